@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: MIT
+#include "mdhcal/arm.hpp"
+
+#include "trigonometry.hpp"
+
+namespace mdhcal {
+
+namespace {
+
+// A comparison with NaN is false, so "inside" refuses it.
+bool inside(double value, double bound) { return value >= -bound && value <= bound; }
+
+bool valid(const Link& link) {
+  return inside(link.alpha_rad, max_angle_rad) && inside(link.a_m, max_length_m) &&
+         inside(link.theta_rad, max_angle_rad) && inside(link.d_m, max_length_m) &&
+         inside(link.beta_rad, max_angle_rad);
+}
+
+bool valid(const Joint& joint, std::int32_t own, std::int32_t count) {
+  if (joint.kind != JointKind::revolute && joint.kind != JointKind::prismatic) return false;
+  if (joint.sign != 1 && joint.sign != -1) return false;
+  if (joint.has_min != 0 && joint.has_min != 1) return false;
+  if (joint.has_max != 0 && joint.has_max != 1) return false;
+  if (joint.has_min == 1 && !inside(joint.min, max_reading)) return false;
+  if (joint.has_max == 1 && !inside(joint.max, max_reading)) return false;
+  if (joint.has_min == 1 && joint.has_max == 1 && !(joint.min <= joint.max)) return false;
+  for (std::int32_t j = 0; j < static_cast<std::int32_t>(max_joints); ++j) {
+    const bool zero = joint.coupling[j] >= 0.0 && joint.coupling[j] <= 0.0;
+    if ((j == own || j >= count) ? !zero : !inside(joint.coupling[j], max_coupling)) return false;
+  }
+  return true;
+}
+
+bool valid(const Pose<double>& pose) {
+  double norm2 = 0.0;
+  for (double c : pose.quaternion) norm2 += c * c;
+  if (!(norm2 >= 1.0 - 1e-9 && norm2 <= 1.0 + 1e-9)) return false;
+  for (double p : pose.position_m) {
+    if (!inside(p, max_length_m)) return false;
+  }
+  return true;
+}
+
+template <class Real>
+void to_matrix(const double (&q)[4], Real (&r)[9]) {
+  const double w = q[0];
+  const double x = q[1];
+  const double y = q[2];
+  const double z = q[3];
+  r[0] = static_cast<Real>(1.0 - 2.0 * (y * y + z * z));
+  r[1] = static_cast<Real>(2.0 * (x * y - w * z));
+  r[2] = static_cast<Real>(2.0 * (x * z + w * y));
+  r[3] = static_cast<Real>(2.0 * (x * y + w * z));
+  r[4] = static_cast<Real>(1.0 - 2.0 * (x * x + z * z));
+  r[5] = static_cast<Real>(2.0 * (y * z - w * x));
+  r[6] = static_cast<Real>(2.0 * (x * z - w * y));
+  r[7] = static_cast<Real>(2.0 * (y * z + w * x));
+  r[8] = static_cast<Real>(1.0 - 2.0 * (x * x + y * y));
+}
+
+double magnitude(double value) { return value < 0.0 ? -value : value; }
+
+template <class Real>
+Status prepare(const Geometry& geometry, Arm<Real>& arm) {
+  const Status status = check(geometry);
+  if (status != Status::ok) return status;
+  arm = Arm<Real>{};
+  arm.joint_count = geometry.joint_count;
+  double reach = 0.0;
+  for (double p : geometry.last_T_flange.position_m) reach += magnitude(p);
+  for (std::int32_t i = 0; i < geometry.joint_count; ++i) {
+    const Link& link = geometry.link[i];
+    const Joint& joint = geometry.joint[i];
+    const std::uint32_t bit = 1U << static_cast<std::uint32_t>(i);
+    ArmLink<Real>& out = arm.link[i];
+    double sine = 0.0;
+    double cosine = 1.0;
+    sin_cos(link.alpha_rad, sine, cosine);
+    out.sin_alpha = static_cast<Real>(sine);
+    out.cos_alpha = static_cast<Real>(cosine);
+    sin_cos(link.beta_rad, sine, cosine);
+    out.sin_beta = static_cast<Real>(sine);
+    out.cos_beta = static_cast<Real>(cosine);
+    out.a_m = static_cast<Real>(link.a_m);
+    out.d_m = static_cast<Real>(link.d_m);
+    out.theta_rad = static_cast<Real>(link.theta_rad);
+    if (joint.kind == JointKind::prismatic) arm.prismatic_mask |= bit;
+    if (joint.has_min == 1) arm.min_mask |= bit;
+    if (joint.has_max == 1) arm.max_mask |= bit;
+    arm.min[i] = static_cast<Real>(joint.min);
+    arm.max[i] = static_cast<Real>(joint.max);
+    for (std::int32_t j = 0; j < geometry.joint_count; ++j) {
+      const double ratio = i == j ? static_cast<double>(joint.sign) : joint.coupling[j];
+      arm.map[i][j] = static_cast<Real>(ratio);
+      if (i != j && (ratio > 0.0 || ratio < 0.0)) arm.coupled = 1;
+    }
+    reach += magnitude(link.a_m) + magnitude(link.d_m);
+    if (joint.kind == JointKind::prismatic) {
+      double travel = joint.has_min == 1 ? magnitude(joint.min) : 0.0;
+      if (joint.has_max == 1 && magnitude(joint.max) > travel) travel = magnitude(joint.max);
+      reach += travel;
+    }
+  }
+  to_matrix(geometry.last_T_flange.quaternion, arm.last_T_flange.rotation);
+  for (int k = 0; k < 3; ++k) {
+    arm.last_T_flange.position_m[k] = static_cast<Real>(geometry.last_T_flange.position_m[k]);
+  }
+  arm.reach_m = static_cast<Real>(reach);
+  return Status::ok;
+}
+
+}  // namespace
+
+Status check(const Geometry& geometry) noexcept {
+  if (geometry.joint_count < 1 || geometry.joint_count > static_cast<std::int32_t>(max_joints)) {
+    return Status::bad_input;
+  }
+  for (std::int32_t i = 0; i < geometry.joint_count; ++i) {
+    if (!valid(geometry.link[i]) || !valid(geometry.joint[i], i, geometry.joint_count)) return Status::bad_input;
+  }
+  return valid(geometry.last_T_flange) ? Status::ok : Status::bad_input;
+}
+
+Status make_arm(const Geometry& geometry, Arm<double>& arm) noexcept { return prepare(geometry, arm); }
+Status make_arm(const Geometry& geometry, Arm<float>& arm) noexcept { return prepare(geometry, arm); }
+
+}  // namespace mdhcal

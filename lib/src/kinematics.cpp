@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: MIT
+#include "mdhcal/kinematics.hpp"
+
+#include "real.hpp"
+#include "rotation.hpp"
+#include "trigonometry.hpp"
+
+namespace mdhcal {
+
+namespace {
+
+constexpr Real reading_bound = static_cast<Real>(max_reading);
+
+bool readings_valid(const Arm<Real>& arm, const Real* q) {
+  for (std::int32_t i = 0; i < arm.joint_count; ++i) {
+    if (!(q[i] >= -reading_bound && q[i] <= reading_bound)) return false;
+  }
+  return true;
+}
+
+Real joint_coordinate(const Arm<Real>& arm, std::int32_t i, const Real* q) {
+  if (arm.coupled == 0) return arm.map[i][i] * q[i];
+  Real sum = 0;
+  for (std::int32_t j = 0; j < arm.joint_count; ++j) sum += arm.map[i][j] * q[j];
+  return sum;
+}
+
+// base_T_i = base_T_{i-1} A_i. `axis` receives the joint's axis in the base frame (third column before Rot_y), `origin`
+// a point on it.
+void append_link(const Arm<Real>& arm, std::int32_t i, const Real* q, Frame<Real>& frame, Real* axis) {
+  const ArmLink<Real>& link = arm.link[i];
+  const bool slides = ((arm.prismatic_mask >> static_cast<std::uint32_t>(i)) & 1U) != 0U;
+  const Real coordinate = joint_coordinate(arm, i, q);
+  const Real theta = slides ? link.theta_rad : coordinate + link.theta_rad;
+  const Real d = slides ? coordinate + link.d_m : link.d_m;
+  Real sine = 0;
+  Real cosine = 1;
+  sin_cos(theta, sine, cosine);
+  for (int row = 0; row < 3; ++row) {
+    Real* r = frame.rotation + 3 * row;
+    const Real x = r[0];
+    const Real y = link.cos_alpha * r[1] + link.sin_alpha * r[2];
+    const Real z = link.cos_alpha * r[2] - link.sin_alpha * r[1];
+    const Real turned_x = cosine * x + sine * y;
+    const Real turned_y = cosine * y - sine * x;
+    frame.position_m[row] += link.a_m * x + d * z;
+    r[0] = link.cos_beta * turned_x - link.sin_beta * z;
+    r[1] = turned_y;
+    r[2] = link.sin_beta * turned_x + link.cos_beta * z;
+    axis[row] = z;
+  }
+}
+
+constexpr Frame<Real> identity{{1, 0, 0, 0, 1, 0, 0, 0, 1}, {0, 0, 0}};
+
+}  // namespace
+
+Status forward(const Arm<Real>& arm, const Real* q, Pose<Real>& base_T_flange) noexcept {
+  if (!readings_valid(arm, q)) return Status::bad_input;
+  Frame<Real> frame = identity;
+  Real axis[3];
+  for (std::int32_t i = 0; i < arm.joint_count; ++i) append_link(arm, i, q, frame, axis);
+  to_pose(multiply(frame, arm.last_T_flange), base_T_flange);
+  return Status::ok;
+}
+
+Status forward(const Arm<Real>& arm, const Real* q, Pose<Real>& base_T_flange, Jacobian<Real>& jacobian) noexcept {
+  if (!readings_valid(arm, q)) return Status::bad_input;
+  Frame<Real> frame = identity;
+  Real axis[max_joints][3];
+  Real point[max_joints][3];
+  for (std::int32_t i = 0; i < arm.joint_count; ++i) {
+    append_link(arm, i, q, frame, axis[i]);
+    for (int k = 0; k < 3; ++k) point[i][k] = frame.position_m[k];
+  }
+  const Frame<Real> flange = multiply(frame, arm.last_T_flange);
+  Jacobian<Real> coordinates{};
+  for (std::int32_t i = 0; i < arm.joint_count; ++i) {
+    const Real* z = axis[i];
+    Real* column = coordinates.column[i];
+    if (((arm.prismatic_mask >> static_cast<std::uint32_t>(i)) & 1U) != 0U) {
+      for (int k = 0; k < 3; ++k) column[k] = z[k];
+    } else {
+      Real lever[3];
+      for (int k = 0; k < 3; ++k) lever[k] = flange.position_m[k] - point[i][k];
+      column[0] = z[1] * lever[2] - z[2] * lever[1];
+      column[1] = z[2] * lever[0] - z[0] * lever[2];
+      column[2] = z[0] * lever[1] - z[1] * lever[0];
+      for (int k = 0; k < 3; ++k) column[3 + k] = z[k];
+    }
+  }
+  jacobian = Jacobian<Real>{};
+  for (std::int32_t j = 0; j < arm.joint_count; ++j) {
+    for (std::int32_t i = 0; i < arm.joint_count; ++i) {
+      const Real ratio = arm.map[i][j];
+      if (arm.coupled == 0 && i != j) continue;
+      for (int k = 0; k < 6; ++k) jacobian.column[j][k] += ratio * coordinates.column[i][k];
+    }
+  }
+  to_pose(flange, base_T_flange);
+  return Status::ok;
+}
+
+Status link_frames(const Arm<Real>& arm, const Real* q, Frame<Real>* frames) noexcept {
+  if (!readings_valid(arm, q)) return Status::bad_input;
+  Real axis[3];
+  frames[0] = identity;
+  for (std::int32_t i = 0; i < arm.joint_count; ++i) {
+    frames[i + 1] = frames[i];
+    append_link(arm, i, q, frames[i + 1], axis);
+  }
+  frames[arm.joint_count + 1] = multiply(frames[arm.joint_count], arm.last_T_flange);
+  return Status::ok;
+}
+
+}  // namespace mdhcal

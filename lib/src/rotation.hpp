@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: MIT
+// Private to lib/src; include after real.hpp. Rotation matrices and quaternions. Internal linkage throughout.
+#pragma once
+
+#include "mdhcal/arm.hpp"
+#include "real.hpp"
+
+namespace mdhcal {
+
+static inline Real square_root(Real x) {
+  if constexpr (sizeof(Real) == sizeof(double)) {
+    return static_cast<Real>(__builtin_sqrt(static_cast<double>(x)));
+  } else {
+    return static_cast<Real>(__builtin_sqrtf(static_cast<float>(x)));
+  }
+}
+
+/// a_T_c = a_T_b b_T_c
+static inline Frame<Real> multiply(const Frame<Real>& a, const Frame<Real>& b) {
+  Frame<Real> c;
+  for (int row = 0; row < 3; ++row) {
+    const Real* r = a.rotation + 3 * row;
+    for (int col = 0; col < 3; ++col) {
+      c.rotation[3 * row + col] = r[0] * b.rotation[col] + r[1] * b.rotation[3 + col] + r[2] * b.rotation[6 + col];
+    }
+    c.position_m[row] =
+        a.position_m[row] + (r[0] * b.position_m[0] + r[1] * b.position_m[1] + r[2] * b.position_m[2]);
+  }
+  return c;
+}
+
+/// The pose of a frame. The quaternion comes from the largest of the four squared components, so that no
+/// cancellation is worse than a factor of four (Shepperd 1978), and is normalised, w >= 0.
+static inline void to_pose(const Frame<Real>& frame, Pose<Real>& pose) {
+  const Real* r = frame.rotation;
+  const Real one = 1;
+  Real q[4];
+  const Real trace = r[0] + r[4] + r[8];
+  if (trace >= r[0] && trace >= r[4] && trace >= r[8]) {
+    q[0] = one + trace;
+    q[1] = r[7] - r[5];
+    q[2] = r[2] - r[6];
+    q[3] = r[3] - r[1];
+  } else if (r[0] >= r[4] && r[0] >= r[8]) {
+    q[0] = r[7] - r[5];
+    q[1] = one + r[0] - r[4] - r[8];
+    q[2] = r[1] + r[3];
+    q[3] = r[2] + r[6];
+  } else if (r[4] >= r[8]) {
+    q[0] = r[2] - r[6];
+    q[1] = r[1] + r[3];
+    q[2] = one - r[0] + r[4] - r[8];
+    q[3] = r[5] + r[7];
+  } else {
+    q[0] = r[3] - r[1];
+    q[1] = r[2] + r[6];
+    q[2] = r[5] + r[7];
+    q[3] = one - r[0] - r[4] + r[8];
+  }
+  const Real norm = square_root((q[0] * q[0] + q[1] * q[1]) + (q[2] * q[2] + q[3] * q[3]));
+  const Real scale = q[0] < Real{0} ? -one / norm : one / norm;
+  for (int k = 0; k < 4; ++k) pose.quaternion[k] = scale * q[k];
+  for (int k = 0; k < 3; ++k) pose.position_m[k] = frame.position_m[k];
+}
+
+}  // namespace mdhcal

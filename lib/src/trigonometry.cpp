@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: MIT
+#include "trigonometry.hpp"
+
+#include <cmath>
+
+#include "real.hpp"
+
+namespace mdhcal {
+
+void sin_cos(Real angle_rad, Real& sine, Real& cosine) noexcept {
+  sine = std::sin(angle_rad);
+  cosine = std::cos(angle_rad);
+}
+
+}  // namespace mdhcal

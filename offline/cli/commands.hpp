@@ -1,0 +1,9 @@
+// SPDX-License-Identifier: MIT
+// One function a command; each lives in the file of its name and registers itself with the program.
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+namespace mdhcal::offline {
+
+}  // namespace mdhcal::offline

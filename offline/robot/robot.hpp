@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <array>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "mdhcal/geometry.hpp"
+
+namespace mdhcal::offline {
+
+using Vector3 = std::array<double, 3>;
+
+/// A point on the flange that a reflector or tool defines, in the flange frame [m].
+struct TargetPoint {
+  std::string name;      ///< the `target` column's word; at most 15 bytes
+  Vector3 flange_p_m{};
+};
+
+/// A robot as its file states it, in SI units and the modified convention, whatever the file used.
+struct Robot {
+  std::string path;      ///< the file that it came from, for messages
+  std::string name;      ///< at most 63 bytes
+  std::string serial;    ///< empty if none; at most 31 bytes
+
+  /// The geometry to use: joints, links, flange. For a plain robot file this is the nominal geometry; for a
+  /// corrected.toml it is the corrected one.
+  Geometry geometry{};
+  /// The nominal links. Equal to geometry.link unless the file states `nominal` tables (corrected.toml does).
+  std::array<Link, max_joints> nominal{};
+
+  std::optional<Vector3> tool_p_m;                 ///< [tool]: nominal target point in the flange frame
+  std::optional<Pose<double>> tracker_T_base;      ///< [base]
+  std::vector<TargetPoint> targets;                ///< [[target]]
+
+  /// [prior]: prior standard deviation of single parameters, by name ("alpha2", "d5", ...) [rad] or [m].
+  std::map<std::string, double> prior;
+
+  /// Units in which a file of this robot is written back.
+  bool length_in_mm = true;
+  bool angle_in_deg = true;
+};
+
+/// Reads a robot file (TOML, DESIGN.md). A standard-convention table is converted exactly, with Hayati's beta where
+/// neighbouring axes are nearly, but not exactly, parallel, so that no length runs away.
+/// Throws InputError naming file, line, column, what was found and what was expected.
+Robot read_robot(const std::string& path);
+
+/// The same from text; `path` is only named in messages.
+Robot parse_robot(const std::string& text, const std::string& path);
+
+/// The robot as a robot file in the modified convention, with 17 significant digits where that is needed to read the
+/// same values back: parse_robot(write_robot(r)) gives the bits of r, provided r came from parse_robot.
+std::string write_robot(const Robot& robot);
+
+}  // namespace mdhcal::offline
