@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: MIT
+#include "offline/output/folder.hpp"
+
+#include <algorithm>
+#include <cerrno>
+#include <csignal>
+#include <cstdio>
+#include <cstring>
+#include <fstream>
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include "offline/error.hpp"
+
+namespace mdhcal::offline {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr std::string_view mark = ".mdhcal-partial-";
+
+[[noreturn]] void fail(const fs::path& path, const std::string& what, int error) {
+  throw InputError(path.string() + ": " + what + ": " + std::strerror(error) + '.');
+}
+
+fs::path partial_name(const fs::path& path) {
+  return path.parent_path() / ('.' + path.filename().string() + std::string(mark) + std::to_string(getpid()));
+}
+
+void write_plain(const fs::path& path, std::string_view bytes) {
+  std::ofstream out(path, std::ios::binary | std::ios::trunc);
+  out.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+  out.close();
+  if (!out) fail(path, "cannot be written", errno);
+}
+
+// What killed runs for the same destination left: the mark ends in the number of a process that is gone.
+void remove_leftovers(const fs::path& destination) {
+  const std::string prefix = '.' + destination.filename().string() + std::string(mark);
+  std::error_code ignored;
+  for (const auto& entry : fs::directory_iterator(destination.parent_path(), ignored)) {
+    const std::string name = entry.path().filename().string();
+    if (!name.starts_with(prefix)) continue;
+    const std::string digits = name.substr(prefix.size());
+    if (digits.empty() || digits.size() > 9 || digits.find_first_not_of("0123456789") != std::string::npos) continue;
+    const int process = std::stoi(digits);
+    if (process != getpid() && kill(process, 0) != 0 && errno == ESRCH) fs::remove_all(entry.path(), ignored);
+  }
+}
+
+// True if there is an earlier result, false if there is nothing or an empty folder.
+bool earlier_result(const fs::path& destination, const std::vector<std::string>& names) {
+  std::error_code error;
+  const fs::file_status status = fs::status(destination, error);
+  if (status.type() == fs::file_type::not_found) return false;
+  if (error) fail(destination, "cannot be read", error.value());
+  if (status.type() != fs::file_type::directory) {
+    throw InputError(destination.string() + " is a file; expected a folder, or a name that is free.");
+  }
+  bool any = false;
+  const fs::directory_iterator entries(destination, error);
+  if (error) fail(destination, "cannot be read", error.value());
+  for (const auto& entry : entries) {
+    const std::string name = entry.path().filename().string();
+    if (std::find(names.begin(), names.end(), name) == names.end()) {
+      throw InputError(destination.string() + " holds \"" + name +
+                       "\", so it is not an earlier result of this command; expected such a result, an empty folder "
+                       "or a name that is free.");
+    }
+    any = true;
+  }
+  return any;
+}
+
+}  // namespace
+
+void write_file(const fs::path& path, std::string_view bytes) {
+  const fs::path partial = partial_name(path);
+  try {
+    write_plain(partial, bytes);
+  } catch (const InputError&) {
+    std::error_code ignored;
+    fs::remove(partial, ignored);
+    fail(path, "cannot be written", errno);
+  }
+  if (std::rename(partial.c_str(), path.c_str()) != 0) {
+    const int error = errno;
+    std::error_code ignored;
+    fs::remove(partial, ignored);
+    fail(path, "cannot be written", error);
+  }
+}
+
+OutputFolder::OutputFolder(fs::path destination, std::vector<std::string> names) : names_(std::move(names)) {
+  // A trailing slash or a link must not change which folder the new one is written beside.
+  std::error_code error;
+  destination_ = fs::weakly_canonical(destination, error);
+  if (destination_.filename().empty()) destination_ = destination_.parent_path();
+  if (error || destination_.filename().empty()) {
+    throw InputError(destination.string() + " cannot be an output folder; expected the name of a folder to write.");
+  }
+  earlier_result(destination_, names_);
+  if (!fs::create_directories(destination_.parent_path(), error) && error) {
+    fail(destination_.parent_path(), "cannot be made", error.value());
+  }
+  remove_leftovers(destination_);
+  staging_ = partial_name(destination_);
+  fs::remove_all(staging_, error);
+  if (!fs::create_directory(staging_, error)) fail(destination_, "cannot be made", error.value());
+}
+
+OutputFolder::~OutputFolder() {
+  std::error_code ignored;
+  if (!committed_) fs::remove_all(staging_, ignored);
+}
+
+void OutputFolder::write(const std::string& name, std::string_view bytes) {
+  if (std::find(names_.begin(), names_.end(), name) == names_.end()) {
+    throw std::logic_error(name + " is not a file of this result");
+  }
+  write_plain(staging_ / name, bytes);
+}
+
+void OutputFolder::commit() {
+  if (earlier_result(destination_, names_)) {
+    if (renameat2(AT_FDCWD, staging_.c_str(), AT_FDCWD, destination_.c_str(), RENAME_EXCHANGE) == 0) {
+      committed_ = true;
+      std::error_code ignored;
+      fs::remove_all(staging_, ignored);  // the earlier result now has this name
+      return;
+    }
+    // A file system that cannot exchange: there is a moment without any result, never one with half of it.
+    if (errno != EINVAL && errno != ENOSYS) fail(destination_, "cannot be exchanged", errno);
+    fs::remove_all(destination_);
+  }
+  if (std::rename(staging_.c_str(), destination_.c_str()) != 0) fail(destination_, "cannot be put in place", errno);
+  committed_ = true;
+}
+
+}  // namespace mdhcal::offline

@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: MIT
+#include "offline/output/folder.hpp"
+
+#include <fstream>
+#include <iterator>
+
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include "offline/error.hpp"
+
+namespace {
+
+namespace fs = std::filesystem;
+using mdhcal::offline::InputError;
+using mdhcal::offline::OutputFolder;
+
+std::string read(const fs::path& path) {
+  std::ifstream in(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+class Folder : public testing::Test {
+ protected:
+  void SetUp() override {
+    std::string pattern = (fs::temp_directory_path() / "mdhcal-folder-XXXXXX").string();
+    ASSERT_NE(mkdtemp(pattern.data()), nullptr);
+    top_ = pattern;
+  }
+  void TearDown() override { fs::remove_all(top_); }
+  std::ptrdiff_t entries() const { return std::distance(fs::directory_iterator(top_), fs::directory_iterator()); }
+
+  const std::vector<std::string> names_{"a.txt", "b.txt"};
+  fs::path top_;
+};
+
+TEST_F(Folder, AppearsWholeAtCommitAndNotBefore) {
+  {
+    OutputFolder folder(top_ / "deep" / "result/", names_);
+    folder.write("a.txt", "one");
+    EXPECT_FALSE(fs::exists(top_ / "deep" / "result"));
+    folder.write("b.txt", "two");
+    folder.commit();
+  }
+  EXPECT_EQ(read(top_ / "deep" / "result" / "a.txt"), "one");
+  EXPECT_EQ(read(top_ / "deep" / "result" / "b.txt"), "two");
+  EXPECT_EQ(std::distance(fs::directory_iterator(top_ / "deep"), fs::directory_iterator()), 1);
+}
+
+TEST_F(Folder, AnEarlierResultIsExchangedAndAnAbandonedRunLeavesIt) {
+  for (const char* text : {"one", "two"}) {
+    OutputFolder folder(top_ / "result", names_);
+    folder.write("a.txt", text);
+    folder.commit();
+  }
+  EXPECT_EQ(read(top_ / "result" / "a.txt"), "two");
+  {
+    OutputFolder folder(top_ / "result", names_);
+    folder.write("a.txt", "three");
+  }
+  EXPECT_EQ(read(top_ / "result" / "a.txt"), "two");
+  EXPECT_EQ(entries(), 1);
+}
+
+TEST_F(Folder, SomethingElseIsRefusedAndUntouched) {
+  fs::create_directory(top_ / "home");
+  std::ofstream(top_ / "home" / "thesis.tex") << "x";
+  EXPECT_THROW(OutputFolder(top_ / "home", names_), InputError);
+  std::ofstream(top_ / "file") << "x";
+  EXPECT_THROW(OutputFolder(top_ / "file", names_), InputError);
+  EXPECT_TRUE(fs::exists(top_ / "home" / "thesis.tex"));
+  // A file that arrives in the folder while the command runs is kept too.
+  OutputFolder folder(top_ / "result", names_);
+  fs::create_directory(top_ / "result");
+  std::ofstream(top_ / "result" / "thesis.tex") << "x";
+  EXPECT_THROW(folder.commit(), InputError);
+  EXPECT_TRUE(fs::exists(top_ / "result" / "thesis.tex"));
+}
+
+TEST_F(Folder, LeftoversOfDeadProcessesAreRemovedAndOnlyThose) {
+  const pid_t child = fork();
+  ASSERT_GE(child, 0);
+  if (child == 0) _exit(0);
+  int status = 0;
+  ASSERT_EQ(waitpid(child, &status, 0), child);
+  const fs::path dead = top_ / (".result.mdhcal-partial-" + std::to_string(child));
+  const fs::path alive = top_ / ".result.mdhcal-partial-1";
+  const fs::path other = top_ / (".other.mdhcal-partial-" + std::to_string(child));
+  for (const fs::path& path : {dead, alive, other}) fs::create_directory(path);
+  OutputFolder folder(top_ / "result", names_);
+  EXPECT_FALSE(fs::exists(dead));
+  EXPECT_TRUE(fs::exists(alive));
+  EXPECT_TRUE(fs::exists(other));
+}
+
+TEST_F(Folder, AFileIsReplacedWhole) {
+  mdhcal::offline::write_file(top_ / "x.csv", "one");
+  mdhcal::offline::write_file(top_ / "x.csv", "two");
+  EXPECT_EQ(read(top_ / "x.csv"), "two");
+  EXPECT_EQ(entries(), 1);
+  EXPECT_THROW(mdhcal::offline::write_file(top_ / "no" / "x.csv", "x"), InputError);
+  fs::create_directory(top_ / "d");
+  EXPECT_THROW(mdhcal::offline::write_file(top_ / "d", "x"), InputError);
+  EXPECT_EQ(entries(), 2);
+}
+
+}  // namespace
