@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: MIT
+#include "blob_fields.hpp"
+
+#include <cstring>
+
+namespace mdhcal {
+
+namespace at = blob_layout;
+
+namespace {
+
+void load_pose(const std::uint8_t* p, Pose<double>& pose) {
+  for (std::size_t i = 0; i < 4; ++i) pose.quaternion[i] = load_f64(p + 8 * i);
+  for (std::size_t i = 0; i < 3; ++i) pose.position_m[i] = load_f64(p + 32 + 8 * i);
+}
+
+template <class Real>
+void load_vector(const std::uint8_t* p, SelfTestVector<Real>& vector) {
+  constexpr std::size_t step = sizeof(Real);
+  const std::uint8_t* pose = p + max_joints * step;
+  const std::uint8_t* inverse = pose + 7 * step;
+  for (std::size_t i = 0; i < max_joints; ++i) {
+    vector.q[i] = load_real<Real>(p + i * step);
+    vector.inverse_q[i] = load_real<Real>(inverse + i * step);
+  }
+  for (std::size_t i = 0; i < 4; ++i) vector.base_T_flange.quaternion[i] = load_real<Real>(pose + i * step);
+  for (std::size_t i = 0; i < 3; ++i) vector.base_T_flange.position_m[i] = load_real<Real>(pose + (4 + i) * step);
+  vector.inverse_status = load_i32(inverse + max_joints * step);
+}
+
+void load_provenance(const std::uint8_t* bytes, BlobProvenance& out) {
+  const std::uint32_t flags = load_u32(bytes + at::flags);
+  std::memcpy(out.tool_version, bytes + at::tool_version, at::tool_version_size);
+  std::memcpy(out.date, bytes + at::date, at::date_size);
+  std::memcpy(out.method, bytes + at::method, at::method_size);
+  std::memcpy(out.lambda_rule, bytes + at::lambda_rule, at::lambda_rule_size);
+  std::memcpy(out.measurements_sha256, bytes + at::measurements_sha256, at::sha256_size);
+  out.pose_count = load_u32(bytes + at::pose_count);
+  out.held_out_count = load_u32(bytes + at::held_out_count);
+  out.has_measurements = (flags & at::flag_calibrated) != 0U ? 1 : 0;
+  out.has_lambda = (flags & at::flag_lambda) != 0U ? 1 : 0;
+  out.has_held_out = (flags & at::flag_held_out) != 0U ? 1 : 0;
+  out.lambda = load_f64(bytes + at::lambda);
+  out.mean_before_m = load_f64(bytes + at::held_out);
+  out.max_before_m = load_f64(bytes + at::held_out + 8);
+  out.mean_after_m = load_f64(bytes + at::held_out + 16);
+  out.max_after_m = load_f64(bytes + at::held_out + 24);
+}
+
+}  // namespace
+
+Link load_link(const std::uint8_t* bytes, std::size_t joint, std::size_t which) noexcept {
+  const std::uint8_t* p = bytes + at::joints + joint * at::joint_size + which;
+  return {load_f64(p), load_f64(p + 8), load_f64(p + 16), load_f64(p + 24), load_f64(p + 32)};
+}
+
+void load_geometry(const std::uint8_t* bytes, Geometry& geometry) noexcept {
+  geometry = Geometry{};
+  geometry.joint_count = load_i32(bytes + at::joint_count);
+  for (std::size_t i = 0; i < static_cast<std::size_t>(geometry.joint_count); ++i) {
+    const std::uint8_t* record = bytes + at::joints + i * at::joint_size;
+    const std::uint32_t flags = load_u32(record + at::joint::flags);
+    Joint& joint = geometry.joint[i];
+    geometry.link[i] = load_link(bytes, i, at::joint::corrected);
+    joint.kind = static_cast<JointKind>(load_i32(record + at::joint::kind));
+    joint.sign = load_i32(record + at::joint::sign);
+    joint.has_min = (flags & at::joint_has_min) != 0U ? 1 : 0;
+    joint.has_max = (flags & at::joint_has_max) != 0U ? 1 : 0;
+    joint.min = load_f64(record + at::joint::min);
+    joint.max = load_f64(record + at::joint::max);
+    for (std::size_t j = 0; j < max_joints; ++j) joint.coupling[j] = load_f64(record + at::joint::coupling + 8 * j);
+  }
+  load_pose(bytes + at::last_T_flange, geometry.last_T_flange);
+}
+
+void load_model(const std::uint8_t* bytes, Model& model) noexcept {
+  load_geometry(bytes, model.geometry);
+  for (std::size_t i = 0; i < max_joints; ++i) model.nominal[i] = load_link(bytes, i, at::joint::nominal);
+  std::memcpy(model.name, bytes + at::name, at::name_size);
+  std::memcpy(model.serial, bytes + at::serial, at::serial_size);
+  model.has_base = (load_u32(bytes + at::flags) & at::flag_base) != 0U ? 1 : 0;
+  load_pose(bytes + at::tracker_T_base, model.tracker_T_base);
+  if (model.has_base == 0) model.tracker_T_base.quaternion[0] = 1.0;
+  model.target_count = load_i32(bytes + at::target_count);
+  for (std::size_t i = 0; i < max_targets; ++i) {
+    const std::uint8_t* record = bytes + at::targets + i * at::target_size;
+    std::memcpy(model.target[i].name, record, at::target_name_size);
+    for (std::size_t k = 0; k < 3; ++k) model.target[i].flange_p_m[k] = load_f64(record + at::target_point + 8 * k);
+  }
+  model.family = static_cast<PostureFamily>(load_i32(bytes + at::family));
+  model.security_counter = load_u32(bytes + at::security_counter);
+  model.tolerances = {load_f64(bytes + at::tolerances), load_f64(bytes + at::tolerances + 8),
+                      load_f64(bytes + at::tolerances + 16), load_f64(bytes + at::tolerances + 24)};
+  load_provenance(bytes, model.provenance);
+  model.arithmetic_id = load_u32(bytes + at::arithmetic_id);
+  model.double_vector_count = load_i32(bytes + at::double_vector_count);
+  model.float_vector_count = load_i32(bytes + at::float_vector_count);
+  for (std::size_t i = 0; i < max_vectors; ++i) {
+    load_vector(bytes + at::double_vectors + i * at::double_vector_size, model.double_vector[i]);
+    load_vector(bytes + at::float_vectors + i * at::float_vector_size, model.float_vector[i]);
+  }
+  model.authentication.algorithm = load_u32(bytes + at::algorithm);
+  std::memcpy(model.authentication.key_id, bytes + at::key_id, at::key_id_size);
+  std::memcpy(model.authentication.signature, bytes + at::signature, at::signature_size);
+}
+
+}  // namespace mdhcal

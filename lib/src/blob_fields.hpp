@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: MIT
+// Private to lib/src. The blob's fields, read and judged one by one, and the model made of them.
+#pragma once
+
+#include "little_endian.hpp"
+#include "mdhcal/blob.hpp"
+
+namespace mdhcal {
+
+// Finite and within +-bound: a comparison with NaN is false.
+template <class Real>
+static inline bool within(Real value, Real bound) {
+  return value >= -bound && value <= bound;
+}
+
+static inline bool all_zero(const std::uint8_t* p, std::size_t size) {
+  std::uint32_t any = 0;
+  for (std::size_t i = 0; i < size; ++i) any |= p[i];
+  return any == 0U;
+}
+
+// At least one zero byte, zeros only behind the first, no control characters. UTF-8 is not checked.
+static inline bool text_valid(const std::uint8_t* p, std::size_t size) {
+  std::size_t length = 0;
+  while (length < size && p[length] != 0) {
+    if (p[length] < 0x20 || p[length] == 0x7F) return false;
+    ++length;
+  }
+  return length < size && all_zero(p + length, size - length);
+}
+
+template <class Real>
+static inline Real load_real(const std::uint8_t* p) {
+  if constexpr (sizeof(Real) == 8) {
+    return load_f64(p);
+  } else {
+    return load_f32(p);
+  }
+}
+
+/// One joint's five parameters; `which` is at::joint::nominal or at::joint::corrected.
+Link load_link(const std::uint8_t* bytes, std::size_t joint, std::size_t which) noexcept;
+
+/// The corrected geometry, whatever its values. The joint count must be valid.
+void load_geometry(const std::uint8_t* bytes, Geometry& geometry) noexcept;
+
+/// The whole model of a blob that has passed every check.
+void load_model(const std::uint8_t* bytes, Model& model) noexcept;
+
+}  // namespace mdhcal

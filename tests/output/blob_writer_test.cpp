@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: MIT
+// Blobs made from robots: what goes in comes out, and the encoding is one to one.
+#include "offline/output/blob_writer.hpp"
+
+#include <gtest/gtest.h>
+
+#include "mdhcal/arm.hpp"
+#include "offline/error.hpp"
+#include "tests/output/sample_robot.hpp"
+
+namespace mdhcal::offline {
+namespace {
+
+Model decoded(const Blob& blob) {
+  Model model{};
+  EXPECT_EQ(decode(blob.data(), blob.size(), DecodeOptions{}, model), Status::ok);
+  return model;
+}
+
+TEST(BlobWriter, HoldsTheRobot) {
+  const Robot robot = sample_robot();
+  const Model model = decoded(make_blob(robot, sample_provenance()));
+  EXPECT_STREQ(model.name, "sample arm");
+  EXPECT_STREQ(model.serial, "SN-0007");
+  ASSERT_EQ(model.geometry.joint_count, 6);
+  for (int i = 0; i < 6; ++i) {
+    EXPECT_EQ(model.geometry.link[i].d_m, robot.geometry.link[i].d_m);
+    EXPECT_EQ(model.geometry.link[i].beta_rad, robot.geometry.link[i].beta_rad);
+    EXPECT_EQ(model.nominal[i].d_m, robot.nominal[static_cast<std::size_t>(i)].d_m);
+  }
+  EXPECT_EQ(model.geometry.joint[2].coupling[1], 0.5);
+  EXPECT_EQ(model.geometry.joint[0].max, 3.0);
+  EXPECT_EQ(model.geometry.joint[1].has_max, 0);
+  EXPECT_EQ(model.geometry.joint[1].max, 0.0);
+  ASSERT_EQ(model.target_count, 2);
+  EXPECT_STREQ(model.target[1].name, "B");
+  EXPECT_EQ(model.target[1].flange_p_m[2], 0.3);
+  EXPECT_EQ(model.has_base, 1);
+  EXPECT_EQ(model.tracker_T_base.position_m[0], 1.5);
+  EXPECT_EQ(model.tracker_T_base.quaternion[0], 0.6) << "the quaternion's sign is chosen so that w >= 0";
+  EXPECT_EQ(model.provenance.pose_count, 50U);
+  EXPECT_EQ(model.provenance.lambda, 0.25);
+  EXPECT_EQ(model.provenance.max_after_m, 0.0002);
+  EXPECT_EQ(model.provenance.measurements_sha256[1], 0x23);
+  EXPECT_STREQ(model.provenance.lambda_rule, "quasi-optimality");
+}
+
+TEST(BlobWriter, EncodingIsTheInverseOfDecoding) {
+  for (const bool calibrated : {true, false}) {
+    const Blob blob = make_blob(sample_robot(), calibrated ? sample_provenance() : Provenance{});
+    EXPECT_EQ(encode(decoded(blob)), blob);
+  }
+}
+
+TEST(BlobWriter, TheToolIsATargetWhereNoneIsNamed) {
+  Robot robot = sample_robot();
+  robot.targets.clear();
+  robot.tool_p_m = Vector3{0.1, 0.2, 0.3};
+  const Model model = decoded(make_blob(robot, Provenance{}));
+  ASSERT_EQ(model.target_count, 1);
+  EXPECT_STREQ(model.target[0].name, "tool");
+}
+
+TEST(BlobWriter, RefusesWhatAControllerWouldRefuse) {
+  Robot robot = sample_robot();
+  robot.geometry.link[2].a_m += 0.06;
+  EXPECT_THROW(make_blob(robot, Provenance{}), Refusal);
+  robot = sample_robot();
+  robot.geometry.link[3].beta_rad -= 0.06;
+  EXPECT_THROW(make_blob(robot, Provenance{}), Refusal);
+  robot = sample_robot();
+  robot.serial = std::string(32, 'x');
+  EXPECT_THROW(make_blob(robot, Provenance{}), InputError);
+  robot = sample_robot();
+  robot.targets.resize(9);
+  EXPECT_THROW(make_blob(robot, Provenance{}), InputError);
+}
+
+TEST(BlobWriter, KnowsTheFamilies) {
+  const double quarter = 1.5707963267948966;
+  const auto family = [](const std::array<Link, max_joints>& links, std::int32_t count) {
+    Robot robot;
+    robot.geometry.joint_count = count;
+    for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i) {
+      robot.geometry.link[i] = robot.nominal[i] = links[i];
+      robot.geometry.joint[i].sign = 1;
+    }
+    robot.geometry.last_T_flange.quaternion[0] = 1.0;
+    return decoded(make_blob(robot, Provenance{})).family;
+  };
+  const std::array<Link, max_joints> ur{Link{0, 0, 0, 0.089, 0},        Link{quarter, 0, 0, 0, 0},
+                                        Link{0, -0.425, 0, 0, 0},       Link{0, -0.392, 0, 0.109, 0},
+                                        Link{quarter, 0, 0, 0.095, 0},  Link{-quarter, 0, 0, 0.082, 0}};
+  EXPECT_EQ(family(ur, 6), PostureFamily::parallel_axes);
+  std::array<Link, max_joints> wrist{Link{0, 0, 0, 0.6, 0},           Link{-quarter, 0.3, 0, 0, 0},
+                                     Link{0, 1.0, 0, 0, 0},           Link{-quarter, 0.2, 0, 1.2, 0},
+                                     Link{quarter, 0, 0, 0, 0},       Link{-quarter, 0, 0, 0.2, 0}};
+  EXPECT_EQ(family(wrist, 6), PostureFamily::spherical_wrist);
+  wrist[4].a_m = 0.05;
+  EXPECT_EQ(family(wrist, 6), PostureFamily::general);
+  EXPECT_EQ(family(ur, 5), PostureFamily::general);
+}
+
+TEST(BlobDate, FollowsItsSources) {
+  EXPECT_EQ(blob_date("2024-02-29"), "2024-02-29");
+  for (const char* wrong : {"2023-02-29", "2024-2-9", "24-02-2009", "2024-02-29x", "", "2024/02/29", "-024-02-02"}) {
+    EXPECT_THROW(blob_date(wrong), InputError) << wrong;
+  }
+  ASSERT_EQ(setenv("SOURCE_DATE_EPOCH", "1700000000", 1), 0);
+  EXPECT_EQ(blob_date(std::nullopt), "2023-11-14");
+  ASSERT_EQ(setenv("SOURCE_DATE_EPOCH", "soon", 1), 0);
+  EXPECT_THROW(blob_date(std::nullopt), InputError);
+  ASSERT_EQ(unsetenv("SOURCE_DATE_EPOCH"), 0);
+  EXPECT_EQ(blob_date(std::nullopt).size(), 10U);
+}
+
+}  // namespace
+}  // namespace mdhcal::offline
