@@ -1,0 +1,442 @@
+// SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <cmath>
+#include <initializer_list>
+#include <string_view>
+
+#include <toml++/toml.h>
+
+#include "offline/error.hpp"
+#include "offline/read_file.hpp"
+#include "offline/robot/convention.hpp"
+#include "offline/robot/robot.hpp"
+#include "offline/robot/rotation.hpp"
+#include "offline/robot/units.hpp"
+
+namespace mdhcal::offline {
+
+namespace {
+
+std::string quoted(std::string_view text) { return '"' + std::string(text) + '"'; }
+
+std::string kind_of(const toml::node& node) {
+  switch (node.type()) {
+    case toml::node_type::table: return "a table";
+    case toml::node_type::array: return "an array";
+    case toml::node_type::string: return "the text " + quoted(node.as_string()->get());
+    case toml::node_type::boolean: return node.as_boolean()->get() ? "true" : "false";
+    case toml::node_type::integer: return std::to_string(node.as_integer()->get());
+    case toml::node_type::floating_point: return shortest_decimal(node.as_floating_point()->get());
+    default: return "a date or time";
+  }
+}
+
+/// The reader: every method throws InputError at the place of the node that it looks at.
+class Reader {
+ public:
+  Reader(const std::string& text, const std::string& path) : path_(path) {
+    const std::size_t nul = text.find('\0');
+    if (nul != std::string::npos) {
+      throw InputError(path, 1 + std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(nul), '\n'), 0,
+                       "Found a zero byte; expected a robot file (TOML text).");
+    }
+    try {
+      root_ = toml::parse(text, path);
+    } catch (const toml::parse_error& error) {
+      throw InputError(path, static_cast<long>(error.source().begin.line),
+                       static_cast<long>(error.source().begin.column),
+                       "Not valid TOML: " + std::string(error.description()) + ".");
+    }
+  }
+
+  Robot read();
+
+ private:
+  [[noreturn]] void fail(const toml::source_region& at, const std::string& message) const {
+    throw InputError(path_, static_cast<long>(at.begin.line), static_cast<long>(at.begin.column), message);
+  }
+
+  // Refuses keys outside `keys`. `where`: "[[link]] 2", or empty for the top level.
+  void allow(const toml::table& table, const std::string& where, std::initializer_list<std::string_view> keys) const {
+    for (auto&& [key, value] : table) {
+      if (std::find(keys.begin(), keys.end(), key.str()) != keys.end()) continue;
+      std::string expected;
+      for (const std::string_view known : keys) expected += (expected.empty() ? "" : ", ") + std::string(known);
+      fail(key.source(), "Unknown key " + quoted(key.str()) + (where.empty() ? "" : " in " + where) + "; expected " +
+                             expected + ".");
+    }
+  }
+
+  std::string text_of(const toml::table& table, std::string_view key, const std::string& fallback,
+                      std::size_t most_bytes) const {
+    const toml::node* node = table.get(key);
+    if (node == nullptr) return fallback;
+    if (!node->is_string()) fail(node->source(), named(key) + kind_of(*node) + "; expected a text in quotes.");
+    std::string text = node->as_string()->get();
+    if (text.size() > most_bytes) {
+      fail(node->source(), named(key) + "a text of " + std::to_string(text.size()) + " bytes; expected at most " +
+                               std::to_string(most_bytes) + ".");
+    }
+    for (const char c : text) {
+      if (static_cast<unsigned char>(c) < 0x20 || c == 0x7F) {
+        fail(node->source(), named(key) + "a control character; expected printable text.");
+      }
+    }
+    return text;
+  }
+
+  static std::string named(std::string_view key) { return "Key " + quoted(key) + ": found "; }
+
+  // One of the words; their index. The first is the default.
+  std::size_t choice(const toml::table& table, std::string_view key,
+                     std::initializer_list<std::string_view> words) const {
+    const toml::node* node = table.get(key);
+    if (node == nullptr) return 0;
+    std::string expected;
+    for (const std::string_view word : words) expected += (expected.empty() ? "" : " or ") + quoted(word);
+    if (node->is_string()) {
+      const auto found = std::find(words.begin(), words.end(), node->as_string()->get());
+      if (found != words.end()) return static_cast<std::size_t>(found - words.begin());
+    }
+    fail(node->source(), named(key) + kind_of(*node) + "; expected " + expected + ".");
+  }
+
+  // A finite number of the file in SI units, |SI value| <= bound.
+  double number(const toml::node& node, std::string_view key, const Unit& unit, double bound) const {
+    double value = 0;
+    if (node.is_integer()) {
+      value = static_cast<double>(node.as_integer()->get());
+    } else if (node.is_floating_point()) {
+      value = node.as_floating_point()->get();
+    } else {
+      fail(node.source(), named(key) + kind_of(node) + "; expected a number.");
+    }
+    const double si = unit.to_si(value);
+    if (!std::isfinite(value)) fail(node.source(), named(key) + kind_of(node) + "; expected a finite number.");
+    if (!(std::abs(si) <= bound)) {
+      const std::string name = unit.name.empty() ? "" : " " + std::string(unit.name);
+      fail(node.source(), named(key) + kind_of(node) + name + "; expected at most " +
+                              shortest_decimal(unit.from_si(bound)) + name + " in size (wrong unit?).");
+    }
+    return si;
+  }
+
+  double number(const toml::table& table, std::string_view key, const Unit& unit, double bound,
+                double fallback) const {
+    const toml::node* node = table.get(key);
+    return node == nullptr ? fallback : number(*node, key, unit, bound);
+  }
+
+  double required(const toml::table& table, const std::string& where, std::string_view key, const Unit& unit,
+                  double bound) const {
+    const toml::node* node = table.get(key);
+    if (node == nullptr) fail(table.source(), where + " has no key " + quoted(key) + "; expected a number.");
+    return number(*node, key, unit, bound);
+  }
+
+  std::int32_t joint_number(const toml::table& table, const std::string& where, std::string_view key) const {
+    const toml::node* node = table.get(key);
+    if (node == nullptr) fail(table.source(), where + " has no key " + quoted(key) + "; expected a joint's number.");
+    if (!node->is_integer() || node->as_integer()->get() < 1 || node->as_integer()->get() > robot_.geometry.joint_count) {
+      fail(node->source(), named(key) + kind_of(*node) + "; expected the number of a joint, 1 to " +
+                               std::to_string(robot_.geometry.joint_count) + ".");
+    }
+    return static_cast<std::int32_t>(node->as_integer()->get()) - 1;
+  }
+
+  // `size` numbers in an array.
+  template <std::size_t size>
+  std::array<double, size> numbers(const toml::node& node, std::string_view key, const Unit& unit, double bound) const {
+    std::array<double, size> values{};
+    const toml::array* array = node.as_array();
+    if (array == nullptr || array->size() != size) {
+      fail(node.source(), named(key) +
+                              (array == nullptr ? kind_of(node) : "an array of " + std::to_string(array->size())) +
+                              "; expected an array of " + std::to_string(size) + " numbers.");
+    }
+    for (std::size_t k = 0; k < size; ++k) values[k] = number(*array->get(k), key, unit, bound);
+    return values;
+  }
+
+  Vector3 point(const toml::table& table, const std::string& where, bool must) const {
+    const toml::node* node = table.get("xyz");
+    if (node == nullptr) {
+      if (must) fail(table.source(), where + " has no key \"xyz\"; expected an array of 3 numbers.");
+      return {};
+    }
+    return numbers<3>(*node, "xyz", length_, max_length_m);
+  }
+
+  const toml::table* section(std::string_view key) const {
+    const toml::node* node = root_.get(key);
+    if (node == nullptr) return nullptr;
+    if (!node->is_table()) {
+      fail(node->source(), named(key) + kind_of(*node) + "; expected a section [" + std::string(key) + "].");
+    }
+    return node->as_table();
+  }
+
+  // The tables of [[key]].
+  std::vector<const toml::table*> sections(std::string_view key, std::size_t most) const {
+    std::vector<const toml::table*> tables;
+    const toml::node* node = root_.get(key);
+    if (node == nullptr) return tables;
+    const std::string expected = "; expected sections [[" + std::string(key) + "]].";
+    if (!node->is_array()) fail(node->source(), named(key) + kind_of(*node) + expected);
+    for (const toml::node& element : *node->as_array()) {
+      if (!element.is_table()) fail(element.source(), named(key) + kind_of(element) + expected);
+      tables.push_back(element.as_table());
+      if (tables.size() > most) {
+        fail(element.source(), "Found more than " + std::to_string(most) + " sections [[" + std::string(key) +
+                                   "]]; expected at most " + std::to_string(most) + ".");
+      }
+    }
+    return tables;
+  }
+
+  Unit unit_of_reading(std::size_t joint) const {
+    return robot_.geometry.joint[joint].kind == JointKind::prismatic ? length_ : angle_;
+  }
+
+  Pose<double> pose(const toml::table& table, const std::string& where) const;
+  Link link(const toml::table& table, const std::string& where, double length_bound) const;
+  void read_joint(const toml::table& table, std::size_t index);
+  void read_links();
+  void read_couplings();
+  void read_targets();
+  void read_priors();
+  void convert_standard();
+  void make_expressible();
+
+  std::string path_;
+  toml::table root_;
+  Robot robot_;
+  Unit length_ = millimetre;
+  Unit angle_ = degree;
+  bool standard_ = false;
+};
+
+Pose<double> Reader::pose(const toml::table& table, const std::string& where) const {
+  allow(table, where, {"xyz", "rxryrz", "quaternion"});
+  const Vector3 xyz = point(table, where, false);
+  std::array<double, 4> q{1, 0, 0, 0};
+  const toml::node* vector = table.get("rxryrz");
+  const toml::node* quaternion = table.get("quaternion");
+  if (vector != nullptr && quaternion != nullptr) {
+    fail(quaternion->source(), where + " has both \"rxryrz\" and \"quaternion\"; expected one of them.");
+  }
+  if (vector != nullptr) q = quaternion_of(numbers<3>(*vector, "rxryrz", angle_, max_angle_rad));
+  if (quaternion != nullptr) {
+    q = numbers<4>(*quaternion, "quaternion", plain_number, 2.0);
+    const double norm = std::hypot(std::hypot(q[0], q[1]), std::hypot(q[2], q[3]));
+    // The library's own bound on the square is 1e-9. The bits are kept: a blob packed from here is the same each time.
+    if (!(std::abs(norm - 1.0) <= 1e-10)) {
+      fail(quaternion->source(), "Key \"quaternion\": found the norm " + shortest_decimal(norm) +
+                                     "; expected a unit quaternion w, x, y, z.");
+    }
+    if (q[0] < 0) {
+      for (double& c : q) c = -c;
+    }
+  }
+  return {{q[0], q[1], q[2], q[3]}, {xyz[0], xyz[1], xyz[2]}};
+}
+
+Link Reader::link(const toml::table& table, const std::string& where, double length_bound) const {
+  Link link{};
+  link.alpha_rad = required(table, where, "alpha", angle_, max_angle_rad);
+  link.a_m = required(table, where, "a", length_, length_bound);
+  link.d_m = required(table, where, "d", length_, length_bound);
+  link.theta_rad = number(table, "theta", angle_, max_angle_rad, 0.0);
+  link.beta_rad = number(table, "beta", angle_, max_angle_rad, 0.0);
+  return link;
+}
+
+void Reader::read_joint(const toml::table& table, std::size_t index) {
+  Joint& joint = robot_.geometry.joint[index];
+  joint.kind = choice(table, "joint", {"revolute", "prismatic"}) == 1 ? JointKind::prismatic : JointKind::revolute;
+  joint.sign = 1;
+  if (const toml::node* node = table.get("sign")) {
+    const double sign = number(*node, "sign", plain_number, 1e9);
+    if (std::abs(std::abs(sign) - 1.0) > 0) {
+      fail(node->source(), named("sign") + kind_of(*node) + "; expected 1 or -1.");
+    }
+    joint.sign = sign > 0 ? 1 : -1;
+  }
+  const Unit unit = unit_of_reading(index);
+  joint.has_min = table.contains("min") ? 1 : 0;
+  joint.has_max = table.contains("max") ? 1 : 0;
+  joint.min = number(table, "min", unit, max_reading, 0.0);
+  joint.max = number(table, "max", unit, max_reading, 0.0);
+  if (joint.has_min == 1 && joint.has_max == 1 && joint.min > joint.max) {
+    fail(table.get("min")->source(), named("min") + kind_of(*table.get("min")) + ", which is more than max (" +
+                                         kind_of(*table.get("max")) + "); expected min <= max.");
+  }
+}
+
+void Reader::read_links() {
+  const auto tables = sections("link", max_joints);
+  if (tables.empty()) throw InputError(path_, 0, 0, "Found no section [[link]]; expected one a joint, base to flange.");
+  robot_.geometry.joint_count = static_cast<std::int32_t>(tables.size());
+  // A standard table may hold lengths that cancel; what comes out of the conversion is held to the library's bound.
+  const double length_bound = standard_ ? 1e6 : max_length_m;
+  for (std::size_t i = 0; i < tables.size(); ++i) {
+    const toml::table& table = *tables[i];
+    const std::string where = "[[link]] " + std::to_string(i + 1);
+    allow(table, where, {"joint", "alpha", "a", "d", "theta", "beta", "sign", "min", "max", "nominal"});
+    read_joint(table, i);
+    robot_.geometry.link[i] = link(table, where, length_bound);
+    robot_.nominal[i] = robot_.geometry.link[i];
+    for (const std::string_view key : {"beta", "nominal"}) {
+      if (standard_ && table.contains(key)) {
+        fail(table.get(key)->source(), "Found the key " + quoted(key) + " in " + where +
+                                           " of a file in the standard convention; expected it only with convention = "
+                                           "\"modified\".");
+      }
+    }
+    if (const toml::node* nominal = table.get("nominal")) {
+      const std::string inner = where + ".nominal";
+      if (!nominal->is_table()) {
+        fail(nominal->source(), named("nominal") + kind_of(*nominal) + "; expected an inline table.");
+      }
+      allow(*nominal->as_table(), inner, {"alpha", "a", "d", "theta", "beta"});
+      robot_.nominal[i] = link(*nominal->as_table(), inner, max_length_m);
+    }
+  }
+}
+
+void Reader::read_couplings() {
+  const auto tables = sections("coupling", max_joints * max_joints);
+  for (std::size_t k = 0; k < tables.size(); ++k) {
+    const toml::table& table = *tables[k];
+    const std::string where = "[[coupling]] " + std::to_string(k + 1);
+    allow(table, where, {"of", "by", "ratio"});
+    const auto of = static_cast<std::size_t>(joint_number(table, where, "of"));
+    const auto by = static_cast<std::size_t>(joint_number(table, where, "by"));
+    if (of == by) fail(table.get("by")->source(), where + " couples a joint to itself; expected two different joints.");
+    double& ratio = robot_.geometry.joint[of].coupling[by];
+    if (std::abs(ratio) > 0) {
+      fail(table.source(), where + " repeats the coupling of joint " + std::to_string(of + 1) + " by joint " +
+                               std::to_string(by + 1) + "; expected each pair once.");
+    }
+    ratio = required(table, where, "ratio", coupling_unit(unit_of_reading(of), unit_of_reading(by)), max_coupling);
+  }
+}
+
+void Reader::read_targets() {
+  const auto tables = sections("target", 8);
+  for (std::size_t k = 0; k < tables.size(); ++k) {
+    const toml::table& table = *tables[k];
+    const std::string where = "[[target]] " + std::to_string(k + 1);
+    allow(table, where, {"name", "xyz"});
+    TargetPoint target{text_of(table, "name", "", 15), point(table, where, true)};
+    for (const TargetPoint& other : robot_.targets) {
+      if (other.name == target.name) {
+        const toml::node* name = table.get("name");
+        fail(name != nullptr ? name->source() : table.source(),
+             where + " repeats the name " + quoted(target.name) + "; expected each target once.");
+      }
+    }
+    robot_.targets.push_back(std::move(target));
+  }
+}
+
+void Reader::read_priors() {
+  const toml::table* table = section("prior");
+  if (table == nullptr) return;
+  for (auto&& [key, value] : *table) {
+    const std::string name(key.str());
+    const std::size_t digit = name.find_first_of("0123456789");
+    const std::string word = name.substr(0, digit);
+    const bool is_length = word == "a" || word == "d";
+    const bool is_angle = word == "alpha" || word == "theta" || word == "beta";
+    const std::string number_text = digit == std::string::npos ? "" : name.substr(digit);
+    const bool in_range = number_text.size() == 1 && number_text[0] >= '1' &&
+                          number_text[0] - '0' <= robot_.geometry.joint_count;
+    if (!(is_length || is_angle) || !in_range) {
+      fail(key.source(), "Unknown key " + quoted(name) +
+                             " in [prior]; expected alpha, a, d, theta or beta with the number of a link, 1 to " +
+                             std::to_string(robot_.geometry.joint_count) + ".");
+    }
+    const double sd = number(value, name, is_length ? length_ : angle_, is_length ? max_length_m : max_angle_rad);
+    if (!(sd > 0)) fail(value.source(), named(name) + kind_of(value) + "; expected a standard deviation above 0.");
+    robot_.prior[name] = sd;
+  }
+}
+
+void Reader::convert_standard() {
+  Geometry& g = robot_.geometry;
+  const auto count = static_cast<std::size_t>(g.joint_count);
+  std::vector<StandardLink> table;
+  for (std::size_t i = 0; i < count; ++i) {
+    table.push_back({g.link[i].theta_rad, g.link[i].d_m, g.link[i].a_m, g.link[i].alpha_rad});
+  }
+  const ModifiedChain chain = mdh_from_standard(table);
+  const auto links = sections("link", max_joints);
+  for (std::size_t i = 0; i < count; ++i) {
+    g.link[i] = chain.links[i];
+    if (!(std::abs(g.link[i].a_m) <= max_length_m && std::abs(g.link[i].d_m) <= max_length_m)) {
+      fail(links[i]->source(), "[[link]] " + std::to_string(i + 1) + " has a length of more than " +
+                                   shortest_decimal(length_.from_si(max_length_m)) + " " + std::string(length_.name) +
+                                   " in the modified convention; expected a shorter one.");
+    }
+  }
+  // The last a and alpha; a flange that they do not move keeps its bits.
+  if (std::abs(table.back().a_m) > 0 || std::abs(table.back().alpha_rad) > 0) {
+    g.last_T_flange = pose_of(compose(chain.last_T_flange, frame_of(g.last_T_flange)));
+  }
+}
+
+// Moves what was computed, by an ulp, to numbers that this file's units can express: writing and reading it again then
+// gives the same bits.
+void Reader::make_expressible() {
+  Geometry& g = robot_.geometry;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(g.joint_count); ++i) {
+    Link& link = g.link[i];
+    for (double* angle : {&link.alpha_rad, &link.theta_rad, &link.beta_rad}) *angle = angle_.expressible(*angle);
+    for (double* length : {&link.a_m, &link.d_m}) *length = length_.expressible(*length);
+    robot_.nominal[i] = link;
+  }
+  for (double& p : g.last_T_flange.position_m) p = length_.expressible(p);
+}
+
+Robot Reader::read() {
+  allow(root_, "", {"name", "serial", "convention", "length_unit", "angle_unit", "link", "coupling", "flange", "tool",
+                    "base", "target", "prior"});
+  robot_.path = path_;
+  std::string stem = path_.substr(path_.find_last_of('/') + 1);
+  stem = stem.substr(0, stem.find_last_of('.'));
+  robot_.name = text_of(root_, "name", stem.substr(0, 63), 63);
+  robot_.serial = text_of(root_, "serial", "", 31);
+  standard_ = choice(root_, "convention", {"modified", "standard"}) == 1;
+  robot_.length_in_mm = choice(root_, "length_unit", {"mm", "m"}) == 0;
+  robot_.angle_in_deg = choice(root_, "angle_unit", {"deg", "rad"}) == 0;
+  length_ = robot_.length_in_mm ? millimetre : metre;
+  angle_ = robot_.angle_in_deg ? degree : radian;
+  robot_.geometry.last_T_flange.quaternion[0] = 1;
+  read_links();
+  read_couplings();
+  if (const toml::table* flange = section("flange")) robot_.geometry.last_T_flange = pose(*flange, "[flange]");
+  if (const toml::table* base = section("base")) robot_.tracker_T_base = pose(*base, "[base]");
+  if (const toml::table* tool = section("tool")) {
+    allow(*tool, "[tool]", {"xyz"});
+    robot_.tool_p_m = point(*tool, "[tool]", true);
+  }
+  read_targets();
+  read_priors();
+  if (standard_) {
+    convert_standard();
+    make_expressible();
+  }
+  if (check(robot_.geometry) != Status::ok) {
+    throw InputError(path_, 0, 0, "The geometry is outside the library's valid range.");
+  }
+  return robot_;
+}
+
+}  // namespace
+
+Robot parse_robot(const std::string& text, const std::string& path) { return Reader(text, path).read(); }
+
+Robot read_robot(const std::string& path) { return parse_robot(read_file(path, "a robot file"), path); }
+
+}  // namespace mdhcal::offline

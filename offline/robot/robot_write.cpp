@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: MIT
+#include <cstring>
+
+#include "offline/robot/robot.hpp"
+#include "offline/robot/rotation.hpp"
+#include "offline/robot/units.hpp"
+
+namespace mdhcal::offline {
+
+namespace {
+
+std::string quoted(const std::string& text) {
+  std::string out = "\"";
+  for (const char c : text) {
+    if (c == '"' || c == '\\') out += '\\';
+    out += c;
+  }
+  return out + '"';
+}
+
+template <class Values>
+std::string array_of(const Values& values, const Unit& unit) {
+  std::string out = "[";
+  for (const double value : values) out += (out.size() > 1 ? ", " : "") + shortest_decimal(unit.from_si(value));
+  return out + ']';
+}
+
+class Writer {
+ public:
+  explicit Writer(const Robot& robot)
+      : robot_(robot),
+        length_(robot.length_in_mm ? millimetre : metre),
+        angle_(robot.angle_in_deg ? degree : radian) {}
+
+  std::string write() {
+    line("name", quoted(robot_.name));
+    if (!robot_.serial.empty()) line("serial", quoted(robot_.serial));
+    line("convention", "\"modified\"");
+    line("length_unit", quoted(std::string(length_.name)));
+    line("angle_unit", quoted(std::string(angle_.name)));
+    const auto count = static_cast<std::size_t>(robot_.geometry.joint_count);
+    for (std::size_t i = 0; i < count; ++i) write_link(i);
+    for (std::size_t of = 0; of < count; ++of) {
+      for (std::size_t by = 0; by < count; ++by) write_coupling(of, by);
+    }
+    write_pose("flange", robot_.geometry.last_T_flange);
+    if (robot_.tool_p_m) {
+      text_ += "[tool]\n";
+      line("xyz", array_of(*robot_.tool_p_m, length_));
+    }
+    if (robot_.tracker_T_base) write_pose("base", *robot_.tracker_T_base);
+    for (const TargetPoint& target : robot_.targets) {
+      text_ += "[[target]]\n";
+      line("name", quoted(target.name));
+      line("xyz", array_of(target.flange_p_m, length_));
+    }
+    if (!robot_.prior.empty()) text_ += "[prior]\n";
+    for (const auto& [name, sd] : robot_.prior) {
+      const bool is_length = name[0] == 'd' || name.find_first_of("0123456789") == 1;
+      line(name, shortest_decimal((is_length ? length_ : angle_).from_si(sd)));
+    }
+    return text_;
+  }
+
+ private:
+  void line(const std::string& key, const std::string& value) { text_ += key + " = " + value + '\n'; }
+
+  std::string number(double si, const Unit& unit) const { return shortest_decimal(unit.from_si(si)); }
+
+  const Unit& unit_of_reading(std::size_t joint) const {
+    return robot_.geometry.joint[joint].kind == JointKind::prismatic ? length_ : angle_;
+  }
+
+  void write_link(std::size_t i) {
+    const Joint& joint = robot_.geometry.joint[i];
+    const Link& link = robot_.geometry.link[i];
+    const Link& nominal = robot_.nominal[i];
+    text_ += "[[link]]\n";
+    if (joint.kind == JointKind::prismatic) line("joint", "\"prismatic\"");
+    line("alpha", number(link.alpha_rad, angle_));
+    line("a", number(link.a_m, length_));
+    line("d", number(link.d_m, length_));
+    line("theta", number(link.theta_rad, angle_));
+    line("beta", number(link.beta_rad, angle_));
+    if (std::memcmp(&link, &nominal, sizeof link) != 0) {
+      line("nominal", "{alpha = " + number(nominal.alpha_rad, angle_) + ", a = " + number(nominal.a_m, length_) +
+                          ", d = " + number(nominal.d_m, length_) + ", theta = " + number(nominal.theta_rad, angle_) +
+                          ", beta = " + number(nominal.beta_rad, angle_) + "}");
+    }
+    if (joint.sign < 0) line("sign", "-1");
+    if (joint.has_min == 1) line("min", number(joint.min, unit_of_reading(i)));
+    if (joint.has_max == 1) line("max", number(joint.max, unit_of_reading(i)));
+  }
+
+  void write_coupling(std::size_t of, std::size_t by) {
+    const double ratio = robot_.geometry.joint[of].coupling[by];
+    if (!(ratio > 0 || ratio < 0)) return;
+    text_ += "[[coupling]]\n";
+    line("of", std::to_string(of + 1));
+    line("by", std::to_string(by + 1));
+    line("ratio", number(ratio, coupling_unit(unit_of_reading(of), unit_of_reading(by))));
+  }
+
+  // The rotation vector where it leads back to the same bits, else the quaternion itself.
+  void write_pose(const std::string& section, const Pose<double>& pose) {
+    text_ += '[' + section + "]\n";
+    line("xyz", array_of(pose.position_m, length_));
+    const std::array<double, 4> q{pose.quaternion[0], pose.quaternion[1], pose.quaternion[2], pose.quaternion[3]};
+    Vector3 vector = rotation_vector_of(q);
+    for (double& component : vector) component = angle_.expressible(component);
+    const std::array<double, 4> again = quaternion_of(vector);
+    if (std::memcmp(q.data(), again.data(), sizeof q) == 0) {
+      line("rxryrz", array_of(vector, angle_));
+    } else {
+      line("quaternion", array_of(q, plain_number));
+    }
+  }
+
+  const Robot& robot_;
+  Unit length_;
+  Unit angle_;
+  std::string text_;
+};
+
+}  // namespace
+
+std::string write_robot(const Robot& robot) { return Writer(robot).write(); }
+
+}  // namespace mdhcal::offline
