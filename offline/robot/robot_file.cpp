@@ -319,6 +319,7 @@ void Reader::read_couplings() {
                                std::to_string(by + 1) + "; expected each pair once.");
     }
     ratio = required(table, where, "ratio", coupling_unit(unit_of_reading(of), unit_of_reading(by)), max_coupling);
+    if (!(std::abs(ratio) > 0)) ratio = 0.0;  // -0 is no coupling either, and is not written back
   }
 }
 
