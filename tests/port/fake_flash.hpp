@@ -53,6 +53,7 @@ class FakeFlash {
     cut_operation = -1;
     failing_operation = -1;
     powered = true;
+    cut_met_a_read = false;
   }
 
   Flash flash;
@@ -60,6 +61,7 @@ class FakeFlash {
   int operations = 0;
   int violations = 0;
   bool powered = true;
+  bool cut_met_a_read = false;
   bool readable = true;  ///< false: every read fails, like a part that has gone
 
  private:
@@ -106,7 +108,9 @@ class FakeFlash {
 
   static Status read(void* context, std::uint32_t address, std::uint8_t* to, std::uint32_t size) {
     FakeFlash& fake = self(context);
-    if (fake.begin() != Course::whole || !fake.readable) return Status::flash_read;
+    const Course course = fake.begin();
+    if (course == Course::torn) fake.cut_met_a_read = true;
+    if (course != Course::whole || !fake.readable) return Status::flash_read;
     if (!fake.inside(address, size)) {
       ++fake.violations;
       return Status::flash_read;
