@@ -63,4 +63,34 @@ static inline void to_pose(const Frame<Real>& frame, Pose<Real>& pose) {
   for (int k = 0; k < 3; ++k) pose.position_m[k] = frame.position_m[k];
 }
 
+static inline Real magnitude(Real x) { return x < Real{0} ? -x : x; }
+
+static inline Real dot(const Real* a, const Real* b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+
+static inline void add_cross(const Real* a, const Real* b, Real scale, Real* sum) {
+  sum[0] += scale * (a[1] * b[2] - a[2] * b[1]);
+  sum[1] += scale * (a[2] * b[0] - a[0] * b[2]);
+  sum[2] += scale * (a[0] * b[1] - a[1] * b[0]);
+}
+
+/// The frame of a pose whose quaternion is a unit one to within what the caller checked; it is normalised here.
+static inline void to_frame(const Pose<Real>& pose, Frame<Real>& frame) {
+  const Real* c = pose.quaternion;
+  const Real scale = Real{2} / ((c[0] * c[0] + c[1] * c[1]) + (c[2] * c[2] + c[3] * c[3]));
+  const Real x = scale * c[1];
+  const Real y = scale * c[2];
+  const Real z = scale * c[3];
+  Real* r = frame.rotation;
+  r[0] = Real{1} - (y * c[2] + z * c[3]);
+  r[1] = x * c[2] - z * c[0];
+  r[2] = x * c[3] + y * c[0];
+  r[3] = x * c[2] + z * c[0];
+  r[4] = Real{1} - (x * c[1] + z * c[3]);
+  r[5] = y * c[3] - x * c[0];
+  r[6] = x * c[3] - y * c[0];
+  r[7] = y * c[3] + x * c[0];
+  r[8] = Real{1} - (x * c[1] + y * c[2]);
+  for (int k = 0; k < 3; ++k) frame.position_m[k] = pose.position_m[k];
+}
+
 }  // namespace mdhcal

@@ -12,4 +12,6 @@ void sin_cos(Real angle_rad, Real& sine, Real& cosine) noexcept {
   cosine = std::cos(angle_rad);
 }
 
+Real arc_tangent(Real y, Real x) noexcept { return std::atan2(y, x); }
+
 }  // namespace mdhcal

@@ -10,4 +10,8 @@ namespace mdhcal {
 void sin_cos(double angle_rad, double& sine, double& cosine) noexcept;
 void sin_cos(float angle_rad, float& sine, float& cosine) noexcept;
 
+/// The angle of the point (x, y) [rad], in [-pi, pi]. Same machines, both precisions.
+double arc_tangent(double y, double x) noexcept;
+float arc_tangent(float y, float x) noexcept;
+
 }  // namespace mdhcal

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "mdhcal/arm.hpp"
+
+namespace mdhcal {
+
+/// Which part of a pose an inverse has to meet. The rest is free.
+enum class Task : std::int32_t {
+  pose = 0,           ///< position and orientation
+  position = 1,       ///< position only
+  position_axis = 2,  ///< position and the direction of the flange's z axis
+  planar = 3,         ///< x and y of the base frame, and the turn about its z axis
+};
+
+/// What one servo tick may do. Take default_tick_options() and change what matters.
+template <class Real>
+struct TickOptions {
+  Real position_tolerance_m;    ///< met if the position error is no larger; > 0 [m]
+  Real rotation_tolerance_rad;  ///< and the rotation error likewise; > 0 [rad]
+  Real max_step[max_joints];    ///< bound of |result - last joints|, each joint, for the whole tick; > 0 [rad] or [m]
+  Real position_weight;         ///< weight of the position error over the reach where not all can be met; > 0 [1]
+  Real rotation_weight;         ///< weight of the rotation error there; > 0 [1]
+  std::int32_t max_iterations;  ///< bound of evaluations of the arm in one tick, 1 ... max_tick_iterations
+  Task task;
+  Real posture[max_joints];     ///< where joints that the task leaves free should go [rad] or [m]
+  Real posture_gain;            ///< part of the way to it in one tick, 0 (off) ... 1
+};
+
+inline constexpr std::int32_t max_tick_iterations = 64;
+
+/// What one tick did. Written whenever the tick does not return bad_input.
+template <class Real>
+struct TickReport {
+  Real position_error_m;        ///< of the result, from the forward model [m]
+  Real rotation_error_rad;      ///< likewise, of the part that the task asks for [rad]
+  Real smallest_singular_value; ///< of the Jacobian of the task, lengths over Arm::reach_m; a lower bound within a
+                                ///< factor of sqrt(6) if the status is ok
+  std::int32_t iterations;      ///< evaluations of the arm
+  std::uint32_t step_mask;      ///< bit i: joint i rests on its step limit
+  std::uint32_t limit_mask;     ///< bit i: joint i rests on a joint limit, or is outside it
+};
+
+/// Tolerances 1e-10 m and rad (float 5e-6), no step limit, position weighted 100 times over rotation, 24 iterations,
+/// the whole pose, no posture.
+TickOptions<double> default_tick_options(const Arm<double>& arm) noexcept;
+TickOptions<float> default_tick_options(const Arm<float>& arm) noexcept;
+
+/// One servo tick: moves the joints q[joint_count] ([rad] or [m]; in: last joints, out: new ones) so that the flange
+/// meets base_T_flange, without passing a step limit or a joint limit and without leaving the branch that the joints
+/// are on. A last joint outside its limit only moves inwards. If the pose cannot be met, the weighted error is made
+/// small within the limits instead, and the result is usable all the same.
+///
+/// The regular case is Newton's method on the Jacobian's QR factors. Where that would break a limit or does not
+/// contract, the step is a damped least-squares one in the singular basis (Wampler 1986; Nakamura, Hanafusa 1986),
+/// with the least damping that keeps every limit; along the weakest singular direction it is the root of the
+/// second-order model, which never crosses a fold of the arm (a straight elbow) to the other branch.
+///
+/// Returns ok (met, confirmed by forward()); joint_limited (short of the target at a joint limit, or a joint is
+/// outside one); near_singular; step_limited; out_of_reach; not_converged; bad_input (q untouched): an option out of
+/// its range, a joint that is not finite or beyond max_reading, a target that is not finite, further than
+/// max_target_m, or whose quaternion is not a unit one to 1e-6 (float 1e-5).
+Status tick(const Arm<double>& arm, const TickOptions<double>& options, const Pose<double>& base_T_flange, double* q,
+            TickReport<double>* report = nullptr) noexcept;
+Status tick(const Arm<float>& arm, const TickOptions<float>& options, const Pose<float>& base_T_flange, float* q,
+            TickReport<float>* report = nullptr) noexcept;
+
+/// Bound of each coordinate of a target's position [m].
+inline constexpr double max_target_m = 100000.0;
+
+}  // namespace mdhcal

@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: MIT
+#include "mdhcal/inverse.hpp"
+
+#include "real.hpp"
+// The tick's parts see Real.
+#include "constrained_tick.hpp"
+#include "regular_tick.hpp"
+
+namespace mdhcal {
+
+namespace {
+
+constexpr Real largest = static_cast<Real>(max_reading);
+
+bool positive(Real x) { return x > Real{0} && x <= Real(1e6); }
+
+bool valid(const TickOptions<Real>& options, std::int32_t joints) {
+  if (!positive(options.position_tolerance_m) || !positive(options.rotation_tolerance_rad)) return false;
+  if (!positive(options.position_weight) || !positive(options.rotation_weight)) return false;
+  if (options.max_iterations < 1 || options.max_iterations > max_tick_iterations) return false;
+  if (options.task != Task::pose && options.task != Task::position && options.task != Task::position_axis &&
+      options.task != Task::planar) {
+    return false;
+  }
+  if (!(options.posture_gain >= Real{0} && options.posture_gain <= Real{1})) return false;
+  for (std::int32_t j = 0; j < joints; ++j) {
+    if (!positive(options.max_step[j])) return false;
+    if (options.posture_gain > Real{0} && !(magnitude(options.posture[j]) <= largest)) return false;
+  }
+  return true;
+}
+
+bool valid(const Pose<Real>& pose) {
+  constexpr Real tolerance = sizeof(Real) == sizeof(double) ? Real(1e-6) : Real(1e-5);
+  const Real* c = pose.quaternion;
+  for (int k = 0; k < 4; ++k) {
+    if (!(magnitude(c[k]) <= Real{2})) return false;
+  }
+  const Real square = (c[0] * c[0] + c[1] * c[1]) + (c[2] * c[2] + c[3] * c[3]);
+  if (!(magnitude(square - Real{1}) <= Real{2} * tolerance)) return false;
+  for (int k = 0; k < 3; ++k) {
+    if (!(magnitude(pose.position_m[k]) <= static_cast<Real>(max_target_m))) return false;
+  }
+  return true;
+}
+
+// Where the tick may leave joint j. The rounding of q + step must not add to the step, hence the margin.
+void set_bounds(TickState& state, std::int32_t j, Real q) {
+  constexpr Real epsilon = sizeof(Real) == sizeof(double) ? Real(2.3e-16) : Real(1.2e-7);
+  const Arm<Real>& arm = *state.arm;
+  const std::uint32_t bit = 1U << static_cast<std::uint32_t>(j);
+  const Real max_step = state.options->max_step[j];
+  const Real reach = max_step - epsilon * (magnitude(q) + max_step);
+  Real low = reach > Real{0} ? q - reach : q;
+  Real high = reach > Real{0} ? q + reach : q;
+  const Real min = (arm.min_mask & bit) != 0U ? arm.min[j] : -largest;
+  const Real max = (arm.max_mask & bit) != 0U ? arm.max[j] : largest;
+  if (low < min) low = q < min ? q : min;
+  if (high > max) high = q > max ? q : max;
+  state.low[j] = low;
+  state.high[j] = high;
+}
+
+std::uint32_t outside_limits(const Arm<Real>& arm, const Real* q) {
+  std::uint32_t mask = 0;
+  for (std::int32_t j = 0; j < arm.joint_count; ++j) {
+    const std::uint32_t bit = 1U << static_cast<std::uint32_t>(j);
+    if ((arm.min_mask & bit) != 0U && q[j] < arm.min[j]) mask |= bit;
+    if ((arm.max_mask & bit) != 0U && q[j] > arm.max[j]) mask |= bit;
+  }
+  return mask;
+}
+
+}  // namespace
+
+TickOptions<Real> default_tick_options(const Arm<Real>& arm) noexcept {
+  TickOptions<Real> options{};
+  options.position_tolerance_m = sizeof(Real) == sizeof(double) ? Real(1e-10) : Real(5e-6);
+  options.rotation_tolerance_rad = options.position_tolerance_m;
+  for (std::int32_t j = 0; j < arm.joint_count; ++j) options.max_step[j] = largest;
+  options.position_weight = 1;
+  options.rotation_weight = Real(0.01);
+  options.max_iterations = 24;
+  options.task = Task::pose;
+  return options;
+}
+
+Status tick(const Arm<Real>& arm, const TickOptions<Real>& options, const Pose<Real>& base_T_flange, Real* q,
+            TickReport<Real>* report) noexcept {
+  if (!valid(options, arm.joint_count) || !valid(base_T_flange) || !readings_valid(arm, q)) return Status::bad_input;
+  TickState state;
+  state.arm = &arm;
+  state.options = &options;
+  to_frame(base_T_flange, state.target);
+  // An arm without lengths turns only; any unit will do.
+  state.length_m = arm.reach_m > Real(1e-6) ? arm.reach_m : Real{1};
+  for (std::int32_t j = 0; j < arm.joint_count; ++j) {
+    state.q[j] = q[j];
+    set_bounds(state, j, q[j]);
+  }
+  state.evaluations = 0;
+  state.step_mask = 0;
+  state.limit_mask = 0;
+  Status status = Status::ok;
+  const bool regular = arm.joint_count == 6 && options.task == Task::pose;
+  if (!regular || !regular_tick(state)) status = constrained_tick(state);
+  for (std::int32_t j = 0; j < arm.joint_count; ++j) q[j] = state.q[j];
+  const std::uint32_t outside = outside_limits(arm, q);
+  if (outside != 0U) status = Status::joint_limited;
+  if (report != nullptr) {
+    report->position_error_m = state.error.position_m;
+    report->rotation_error_rad = state.error.rotation_rad;
+    report->smallest_singular_value = state.smallest_singular_value;
+    report->iterations = state.evaluations;
+    report->step_mask = state.step_mask;
+    report->limit_mask = state.limit_mask | outside;
+  }
+  return status;
+}
+
+}  // namespace mdhcal

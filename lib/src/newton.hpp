@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: MIT
+// Private to lib/src; include after real.hpp. The regular step of a six-joint arm: J dq = e by Householder QR.
+#pragma once
+
+#include "real.hpp"
+#include "rotation.hpp"
+#include "svd.hpp"
+
+namespace mdhcal {
+namespace {
+
+/// The QR factors of a 6 x 6 matrix, column by column: below and on the diagonal the Householder vectors, above it R.
+struct Factors {
+  Real column[6][6];
+  Real diagonal[6];   ///< of R
+  Real scale[6];      ///< 2 / |v|^2 of each Householder vector
+};
+
+/// Factors the matrix in place. Returns a lower bound of its smallest singular value, 1 / |R^-1|_F, which is at most
+/// sqrt(6) below it; 0 if it is singular.
+inline Real factor(Factors& f) {
+  for (int k = 0; k < 6; ++k) {
+    Real* v = f.column[k];
+    Real square = 0;
+    for (int i = k; i < 6; ++i) square += v[i] * v[i];
+    if (!(square > Real{0})) return 0;
+    const Real norm = v[k] > Real{0} ? -square_root(square) : square_root(square);
+    f.diagonal[k] = norm;
+    // |v - norm e_k|^2 / 2 = norm (norm - v_k)
+    f.scale[k] = Real{1} / (norm * (norm - v[k]));
+    v[k] -= norm;
+    for (int j = k + 1; j < 6; ++j) {
+      Real* c = f.column[j];
+      Real sum = 0;
+      for (int i = k; i < 6; ++i) sum += v[i] * c[i];
+      sum *= f.scale[k];
+      for (int i = k; i < 6; ++i) c[i] -= sum * v[i];
+    }
+  }
+  Real frobenius = 0;
+  for (int k = 0; k < 6; ++k) {
+    // Column k of R^-1 by back substitution.
+    Real x[6];
+    x[k] = Real{1} / f.diagonal[k];
+    frobenius += x[k] * x[k];
+    for (int i = k - 1; i >= 0; --i) {
+      Real sum = 0;
+      for (int j = i + 1; j <= k; ++j) sum += f.column[j][i] * x[j];
+      x[i] = -sum / f.diagonal[i];
+      frobenius += x[i] * x[i];
+    }
+  }
+  return Real{1} / square_root(frobenius);
+}
+
+/// x = A^-1 b; b is overwritten.
+inline void solve(const Factors& f, Real* b, Real* x) {
+  for (int k = 0; k < 6; ++k) {
+    const Real* v = f.column[k];
+    Real sum = 0;
+    for (int i = k; i < 6; ++i) sum += v[i] * b[i];
+    sum *= f.scale[k];
+    for (int i = k; i < 6; ++i) b[i] -= sum * v[i];
+  }
+  for (int i = 5; i >= 0; --i) {
+    Real sum = b[i];
+    for (int j = i + 1; j < 6; ++j) sum -= f.column[j][i] * x[j];
+    x[i] = sum / f.diagonal[i];
+  }
+}
+
+}  // namespace
+}  // namespace mdhcal

@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: MIT
+// Private to lib/src; include after real.hpp. The regular case of a servo tick of a six-joint arm.
+#pragma once
+
+#include "newton.hpp"
+#include "tick.hpp"
+
+namespace mdhcal {
+namespace {
+
+/// Below this bound of the smallest singular value the constrained step takes over: there Newton's step can leave the
+/// neighbourhood although its error contracts.
+constexpr Real regular_bound = Real(0.004);
+/// The longest regular step [rad, or lengths of the arm].
+constexpr Real regular_step = Real(0.3);
+
+/// The unit-free Jacobian by reading, factored.
+inline Real factor_jacobian(const TickState& state, Jacobian<Real>& jacobian, Factors& factors) {
+  to_readings(*state.arm, jacobian);
+  const Real per_length = Real{1} / state.length_m;
+  for (std::int32_t j = 0; j < 6; ++j) {
+    const Real unit = joint_unit(state, j);
+    for (int k = 0; k < 3; ++k) factors.column[j][k] = jacobian.column[j][k] * (per_length * unit);
+    for (int k = 3; k < 6; ++k) factors.column[j][k] = jacobian.column[j][k] * unit;
+  }
+  return factor(factors);
+}
+
+/// Newton's method without a safeguard, given up when a step leaves the bounds or does not contract. Returns whether
+/// the pose is met; if not, q is as it was. A Jacobian is used again for a step that is short enough for the error
+/// after it, its length times the Jacobian's age, to be below the tolerance.
+[[gnu::noinline]] bool regular_tick(TickState& state) {
+  const Real per_length = Real{1} / state.length_m;
+  const Real tolerance_rad = state.options->rotation_tolerance_rad;
+  const Real tolerance_length = state.options->position_tolerance_m * per_length;
+  const Real tolerance = tolerance_rad < tolerance_length ? tolerance_rad : tolerance_length;
+  Real q[6];
+  for (int j = 0; j < 6; ++j) q[j] = state.q[j];
+  Factors factors;
+  Real bound = 0;
+  Real last_size = 0;
+  Real longest_allowed = regular_step;
+  bool fresh = true;
+  for (std::int32_t round = 0; round < 8 && state.evaluations < state.options->max_iterations; ++round) {
+    Frame<Real> frame;
+    PoseError error;
+    ++state.evaluations;
+    if (fresh) {
+      Jacobian<Real> jacobian;
+      evaluate(*state.arm, q, frame, jacobian);
+      pose_error(state.target, frame, Task::pose, error);
+      if (round == 0 || !met(state, error)) {
+        bound = factor_jacobian(state, jacobian, factors);
+        if (!(bound > regular_bound)) return false;
+      }
+    } else {
+      evaluate(*state.arm, q, frame);
+      pose_error(state.target, frame, Task::pose, error);
+    }
+    if (met(state, error)) {
+      for (int j = 0; j < 6; ++j) state.q[j] = q[j];
+      state.error = error;
+      state.smallest_singular_value = bound;
+      return true;
+    }
+    const Real length = error.position_m * per_length;
+    const Real size = length > error.rotation_rad ? length : error.rotation_rad;
+    if (round > 0 && !(size < Real(0.5) * last_size)) return false;
+    last_size = size;
+    Real b[6];
+    Real x[6];
+    for (int k = 0; k < 3; ++k) b[k] = error.vector[k] * per_length;
+    for (int k = 3; k < 6; ++k) b[k] = error.vector[k];
+    solve(factors, b, x);
+    Real longest = 0;
+    for (int j = 0; j < 6; ++j) {
+      const Real step = magnitude(x[j]);
+      if (step > longest) longest = step;
+      q[j] += x[j] * joint_unit(state, j);
+      if (!(q[j] >= state.low[j] && q[j] <= state.high[j])) return false;
+    }
+    // Steps that halve at least stay within twice the first one.
+    if (!(longest <= longest_allowed)) return false;
+    longest_allowed = Real(0.5) * longest;
+    fresh = longest * longest * longest > tolerance;
+  }
+  return false;
+}
+
+}  // namespace
+}  // namespace mdhcal
