@@ -6,4 +6,7 @@
 
 namespace mdhcal::offline {
 
+void add_simulate(CLI::App& app);
+void add_convert(CLI::App& app);
+
 }  // namespace mdhcal::offline

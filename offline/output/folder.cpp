@@ -77,6 +77,12 @@ bool earlier_result(const fs::path& destination, const std::vector<std::string>&
 }  // namespace
 
 void write_file(const fs::path& path, std::string_view bytes) {
+  std::error_code missing;
+  const fs::file_type type = fs::status(path, missing).type();
+  if (type == fs::file_type::character || type == fs::file_type::fifo) {
+    write_plain(path, bytes);
+    return;
+  }
   const fs::path partial = partial_name(path);
   try {
     write_plain(partial, bytes);

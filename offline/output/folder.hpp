@@ -8,7 +8,8 @@
 
 namespace mdhcal::offline {
 
-/// Writes a file so that it is there whole or not at all: under another name beside it, then renamed.
+/// Writes a file so that it is there whole or not at all: under another name beside it, then renamed. A device or a
+/// pipe (/dev/stdout) is written as it is.
 /// Throws InputError if it cannot be written.
 void write_file(const std::filesystem::path& path, std::string_view bytes);
 
