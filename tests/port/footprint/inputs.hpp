@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: MIT
+// The arm and the joint vectors over which the costs are measured.
+#pragma once
+
+#include <cstdint>
+
+#include "mdhcal/geometry.hpp"
+
+namespace footprint {
+
+inline constexpr int input_count = 1000;
+
+/// Portable random numbers (xorshift64*, Vigna 2016).
+class Random {
+ public:
+  explicit Random(std::uint64_t seed) : state_(seed) {}
+  double uniform(double low, double high) {
+    state_ ^= state_ >> 12;
+    state_ ^= state_ << 25;
+    state_ ^= state_ >> 27;
+    const std::uint64_t bits = (state_ * 2685821657736338717U) >> 11;
+    return low + (high - low) * (static_cast<double>(bits) * 0x1p-53);
+  }
+
+ private:
+  std::uint64_t state_;
+};
+
+/// A six-joint arm with three parallel axes (li2022, Table 1), with errors of 1 mm and 0.1 degrees in every parameter.
+inline mdhcal::Geometry calibrated_arm() {
+  constexpr double deg = 3.14159265358979323846 / 180.0;
+  constexpr double table[6][3] = {{0, 0, 99.927},   {90, 0, 106.950}, {0, 428.052, 0},
+                                  {0, 398.551, 0}, {-90, 0, 93.160}, {-90, 0, 81.910}};
+  Random random(20220822);
+  mdhcal::Geometry geometry{};
+  geometry.joint_count = 6;
+  for (int i = 0; i < 6; ++i) {
+    mdhcal::Link& link = geometry.link[i];
+    link.alpha_rad = (table[i][0] + random.uniform(-0.1, 0.1)) * deg;
+    link.a_m = (table[i][1] + random.uniform(-1, 1)) * 1e-3;
+    link.d_m = (table[i][2] + random.uniform(-1, 1)) * 1e-3;
+    link.theta_rad = random.uniform(-0.1, 0.1) * deg;
+    link.beta_rad = i == 1 || i == 2 ? random.uniform(-0.1, 0.1) * deg : 0.0;
+    geometry.joint[i].sign = 1;
+  }
+  geometry.last_T_flange.quaternion[0] = 1;
+  return geometry;
+}
+
+enum class Set { regular, near_singular };
+
+/// Joints at least 0.3 rad from the wrist's and the elbow's singularity, or within 0.01 rad of one or both.
+inline void joints(Set set, Random& random, double (&q_rad)[6]) {
+  for (double& q : q_rad) q = random.uniform(-3.1, 3.1);
+  const double side_elbow = q_rad[2] < 0 ? -1 : 1;
+  const double side_wrist = q_rad[4] < 0 ? -1 : 1;
+  q_rad[2] = side_elbow * random.uniform(0.3, 2.8);
+  q_rad[4] = side_wrist * random.uniform(0.3, 2.8);
+  if (set == Set::near_singular) {
+    const double which = random.uniform(0, 3);
+    if (which < 2) q_rad[4] = random.uniform(-0.01, 0.01);
+    if (which > 1) q_rad[2] = random.uniform(-0.01, 0.01);
+  }
+}
+
+}  // namespace footprint
