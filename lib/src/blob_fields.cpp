@@ -49,6 +49,23 @@ void load_provenance(const std::uint8_t* bytes, BlobProvenance& out) {
 
 }  // namespace
 
+bool all_zero(const std::uint8_t* p, std::size_t size) noexcept {
+  std::uint32_t any = 0;
+  std::size_t i = 0;
+  for (; size - i >= 4; i += 4) any |= load_u32(p + i);
+  for (; i < size; ++i) any |= p[i];
+  return any == 0U;
+}
+
+bool text_valid(const std::uint8_t* p, std::size_t size) noexcept {
+  std::size_t length = 0;
+  while (length < size && p[length] != 0) {
+    if (p[length] < 0x20 || p[length] == 0x7F) return false;
+    ++length;
+  }
+  return length < size && all_zero(p + length, size - length);
+}
+
 Link load_link(const std::uint8_t* bytes, std::size_t joint, std::size_t which) noexcept {
   const std::uint8_t* p = bytes + at::joints + joint * at::joint_size + which;
   return {load_f64(p), load_f64(p + 8), load_f64(p + 16), load_f64(p + 24), load_f64(p + 32)};

@@ -13,21 +13,12 @@ static inline bool within(Real value, Real bound) {
   return value >= -bound && value <= bound;
 }
 
-static inline bool all_zero(const std::uint8_t* p, std::size_t size) {
-  std::uint32_t any = 0;
-  for (std::size_t i = 0; i < size; ++i) any |= p[i];
-  return any == 0U;
-}
+/// Whether `size` bytes are all zero.
+bool all_zero(const std::uint8_t* p, std::size_t size) noexcept;
 
-// At least one zero byte, zeros only behind the first, no control characters. UTF-8 is not checked.
-static inline bool text_valid(const std::uint8_t* p, std::size_t size) {
-  std::size_t length = 0;
-  while (length < size && p[length] != 0) {
-    if (p[length] < 0x20 || p[length] == 0x7F) return false;
-    ++length;
-  }
-  return length < size && all_zero(p + length, size - length);
-}
+/// Whether a text field is well-formed: at least one zero byte, zeros only behind the first, no control characters.
+/// UTF-8 is not checked.
+bool text_valid(const std::uint8_t* p, std::size_t size) noexcept;
 
 template <class Real>
 static inline Real load_real(const std::uint8_t* p) {

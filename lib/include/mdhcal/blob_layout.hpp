@@ -15,7 +15,7 @@ inline constexpr std::uint32_t magic_value = 0xCCBC6BA0U;
 inline constexpr std::uint16_t major_value = 1;
 inline constexpr std::uint16_t minor_value = 0;
 /// CRC-32 of the canonical field list in docs/blob.md, constant within a major version.
-inline constexpr std::uint32_t layout_id_value = 0x00000001U;
+inline constexpr std::uint32_t layout_id_value = 0x428DBF3EU;
 
 /// Bits of `flags`. A reader refuses an unknown bit from `critical_flags`; other unknown bits only in its own minor.
 inline constexpr std::uint32_t flag_base = 1U << 0U;        ///< tracker_T_base is stated
