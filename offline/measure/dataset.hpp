@@ -15,6 +15,7 @@ enum class MeasurementKind : std::int32_t {
   position,  ///< x, y, z of a target point
   pose,      ///< x, y, z and a rotation of the target frame (its rotation is the flange's)
   distance,  ///< length between the target points of two poses (ball bar, draw wire): columns `distance`, `to`
+  joints,    ///< nothing: the row only states the joints of a distance's other end
 };
 
 /// One row, in SI units.

@@ -1,0 +1,329 @@
+// SPDX-License-Identifier: MIT
+#include "offline/measure/dataset.hpp"
+
+#include <cmath>
+#include <unordered_map>
+
+#include "offline/error.hpp"
+#include "offline/measure/columns.hpp"
+#include "offline/measure/digest.hpp"
+#include "offline/read_file.hpp"
+#include "offline/robot/rotation.hpp"
+
+namespace mdhcal::offline {
+
+namespace {
+
+constexpr std::size_t most_targets = 8;
+constexpr std::size_t most_target_bytes = 15;
+
+// Indices of words in their order of first appearance.
+class Names {
+ public:
+  std::uint32_t index(std::string_view word, std::vector<std::string>& words) {
+    // Rows of one group stand together, mostly.
+    if (last_ < words.size() && words[last_] == word) return last_;
+    const auto [entry, added] = index_.try_emplace(std::string(word), static_cast<std::uint32_t>(words.size()));
+    if (added) words.emplace_back(word);
+    return last_ = entry->second;
+  }
+
+ private:
+  std::unordered_map<std::string, std::uint32_t> index_;
+  std::uint32_t last_ = 0;
+};
+
+class Reader {
+ public:
+  Reader(const std::string& text, const std::string& path, const Robot& robot)
+      : csv_(text, path, "a measurement file"), columns_(csv_), robot_(robot) {
+    data_.path = path;
+    data_.joint_count = static_cast<std::size_t>(robot.geometry.joint_count);
+    data_.digest_sha256 = sha256_hex(text);
+  }
+
+  Dataset read() {
+    find_columns();
+    while (csv_.next()) read_row();
+    link_distances();
+    add_notes();
+    if (data_.rows.empty()) {
+      throw InputError(csv_.path(), csv_.line(), 0,
+                       seen_ == 0 ? "Found no row under the header; expected a row a measured target."
+                                  : "Found no measured point in any of the " + std::to_string(seen_) +
+                                        " rows (all are 0, 0, 0 or empty); expected at least one.");
+    }
+    return std::move(data_);
+  }
+
+ private:
+  void find_columns() {
+    const Unit length = length_unit(robot_);
+    const Unit angle = angle_unit(robot_);
+    q_ = columns_.joints(robot_.geometry, angle, length, "q", "", true);
+    commanded_ = columns_.joints(robot_.geometry, angle, length, "q", "_cmd", false);
+    position_ = columns_.find_all({"x", "y", "z"}, length);
+    distance_ = columns_.find("distance", length);
+    to_ = columns_.find_text("to");
+    if (position_.empty() && !distance_) (void)columns_.require("x", length, "with the measured point (or \"distance\")");
+    id_ = columns_.find_text("id");
+    group_ = columns_.find_text("group");
+    target_ = columns_.find_text("target");
+    sigma_ = columns_.find("sigma", length);
+    sigmas_ = columns_.find_all({"sx", "sy", "sz"}, length);
+    quaternion_ = columns_.find_all({"qw", "qx", "qy", "qz"}, plain_number);
+    vector_ = columns_.find_all({"rx", "ry", "rz"}, angle);
+    temperature_ = columns_.find_text("temperature");
+    direction_ = columns_.find_text("direction");
+    if (sigma_ && !sigmas_.empty()) csv_.fail_header(sigma_.index, "found beside sx, sy, sz; expected one of the two.");
+    if (!quaternion_.empty() && !vector_.empty()) {
+      csv_.fail_header(vector_[0].index, "found beside qw, qx, qy, qz; expected one kind of rotation.");
+    }
+    const std::string unknown = columns_.unknown();
+    if (!unknown.empty()) data_.notes.push_back(csv_.path() + ": unknown columns are ignored: " + unknown + ".");
+  }
+
+  void read_row() {
+    ++seen_;
+    Measurement row;
+    row.line = csv_.line();
+    row.id = id_ && !id_.empty(csv_) ? std::string(csv_.field(id_.index)) : std::to_string(seen_);
+    for (std::size_t j = 0; j < q_.size(); ++j) row.q[j] = q_[j].read(csv_, max_reading);
+    const bool has_distance = distance_ && !distance_.empty(csv_);
+    const bool has_position = read_position(row, has_distance);
+    std::string_view to;
+    if (has_distance) {
+      to = read_distance(row, has_position);
+    } else if (!has_position) {
+      // It may be the other end of a distance; whether it is, is known at the end.
+      pointless_.push_back(data_.rows.size());
+    } else {
+      read_rotation(row);
+    }
+    read_sigma(row);
+    read_words(row);
+    if (!to.empty()) links_.push_back({data_.rows.size(), std::string(to), row.line});
+    data_.rows.push_back(std::move(row));
+  }
+
+  bool read_position(Measurement& row, bool has_distance) {
+    if (position_.empty()) return false;
+    std::size_t empty = 0;
+    for (const Column& column : position_) empty += column.empty(csv_) ? 1U : 0U;
+    if (empty == 3) return false;
+    double size = 0;
+    for (std::size_t k = 0; k < 3; ++k) {
+      row.position_m[k] = position_[k].read(csv_);
+      size += std::abs(row.position_m[k]);
+    }
+    // Trackers export a lost point as 0, 0, 0; a draw wire's fixed end may well lie there.
+    return size > 0 || has_distance;
+  }
+
+  // The word in `to`, empty for a fixed end.
+  std::string_view read_distance(Measurement& row, bool has_position) {
+    row.kind = MeasurementKind::distance;
+    row.distance_m = distance_.read(csv_);
+    if (!(row.distance_m > 0)) {
+      csv_.fail(distance_.index, "found " + std::string(csv_.field(distance_.index)) + "; expected a length above 0.");
+    }
+    const std::string_view to = to_ ? csv_.field(to_.index) : std::string_view{};
+    if (to.empty() && !has_position) {
+      csv_.fail(distance_.index, "found a distance to nothing; expected the other row's id in \"to\", or a fixed point "
+                                 "in x, y, z.");
+    }
+    if (!to.empty() && has_position) {
+      csv_.fail(to_.index, "found beside a point in x, y, z; expected the distance's other end once.");
+    }
+    return to;
+  }
+
+  void read_rotation(Measurement& row) {
+    const auto& columns = quaternion_.empty() ? vector_ : quaternion_;
+    std::size_t empty = 0;
+    for (const Column& column : columns) empty += column.empty(csv_) ? 1U : 0U;
+    if (empty == columns.size()) return;
+    row.kind = MeasurementKind::pose;
+    if (quaternion_.empty()) {
+      row.quaternion = quaternion_of({vector_[0].read(csv_), vector_[1].read(csv_), vector_[2].read(csv_)});
+      return;
+    }
+    double norm = 0;
+    for (std::size_t k = 0; k < 4; ++k) {
+      row.quaternion[k] = quaternion_[k].read(csv_, 2.0);
+      norm += row.quaternion[k] * row.quaternion[k];
+    }
+    norm = std::sqrt(norm);
+    // Files carry a few digits; more than this is no rounding.
+    if (!(std::abs(norm - 1.0) <= 1e-3)) {
+      csv_.fail(quaternion_[0].index, "found a quaternion of norm " + shortest_decimal(norm) + "; expected a norm of 1.");
+    }
+    if (row.quaternion[0] < 0) norm = -norm;
+    for (double& c : row.quaternion) c /= norm;
+  }
+
+  void read_sigma(Measurement& row) {
+    const auto one = [&](const Column& column) {
+      if (column.empty(csv_)) return 0.0;
+      const double sd = column.read(csv_);
+      if (sd < 0) {
+        csv_.fail(column.index, "found " + std::string(csv_.field(column.index)) +
+                                    "; expected a standard deviation, not below 0.");
+      }
+      return sd;
+    };
+    if (sigma_) row.sigma_m.fill(one(sigma_));
+    for (std::size_t k = 0; k < sigmas_.size(); ++k) row.sigma_m[k] = one(sigmas_[k]);
+  }
+
+  void read_words(Measurement& row) {
+    const std::string_view target = target_ ? csv_.field(target_.index) : std::string_view{};
+    if (target.size() > most_target_bytes) {
+      csv_.fail(target_.index, "found a name of " + std::to_string(target.size()) + " bytes; expected at most " +
+                                   std::to_string(most_target_bytes) + ".");
+    }
+    row.target = target_names_.index(target, data_.targets);
+    if (data_.targets.size() > most_targets) {
+      csv_.fail(target_.index, "found the " + std::to_string(most_targets + 1) + "th target \"" + std::string(target) +
+                                   "\"; expected at most " + std::to_string(most_targets) + ".");
+    }
+    if (group_ && !group_.empty(csv_)) {
+      row.group = group_names_.index(csv_.field(group_.index), data_.groups);
+    } else if (target_ && id_) {
+      // The reflectors of one pose are measured in one stand of the arm.
+      row.group = group_names_.index(row.id, data_.groups);
+    } else {
+      row.group = static_cast<std::uint32_t>(data_.groups.size());
+      data_.groups.push_back(row.id);
+    }
+    if (!commanded_.empty()) {
+      auto& q = data_.commanded.emplace_back();
+      for (std::size_t j = 0; j < commanded_.size(); ++j) q[j] = commanded_[j].read(csv_, max_reading);
+    }
+    if (temperature_) data_.temperature.push_back(temperature_.read(csv_));
+    if (direction_) data_.direction.emplace_back(csv_.field(direction_.index));
+  }
+
+  // Finds the rows that `to` names, and drops the rows that measure nothing and are no distance's other end.
+  void link_distances() {
+    std::unordered_map<std::string, std::int64_t> by_id;
+    constexpr std::int64_t ambiguous = -2;
+    if (!links_.empty()) {
+      const auto add = [&](const std::string& name, std::int64_t row) {
+        const auto [entry, added] = by_id.try_emplace(name, row);
+        if (!added && entry->second != row) entry->second = ambiguous;
+      };
+      for (std::size_t i = 0; i < data_.rows.size(); ++i) {
+        const Measurement& row = data_.rows[i];
+        add(row.id, static_cast<std::int64_t>(i));
+        if (target_) add(row.id + '/' + data_.targets[row.target], static_cast<std::int64_t>(i));
+      }
+    }
+    std::vector<bool> is_end(data_.rows.size(), false);
+    for (const Link& link : links_) {
+      const auto found = by_id.find(link.to);
+      const bool own = found != by_id.end() && found->second == static_cast<std::int64_t>(link.row);
+      if (found == by_id.end() || found->second == ambiguous || own) {
+        throw InputError(csv_.path(), link.line, 0,
+                         "Column \"to\": found \"" + link.to + "\", which names " +
+                             (own ? "the row itself" : found == by_id.end() ? "no row" : "more than one row") +
+                             "; expected the id of one other row (or id/target).");
+      }
+      data_.rows[link.row].other_row = found->second;
+      is_end[static_cast<std::size_t>(found->second)] = true;
+    }
+    drop_pointless(is_end);
+  }
+
+  void drop_pointless(const std::vector<bool>& is_end) {
+    std::vector<std::int64_t> moved_to(data_.rows.size());
+    std::size_t kept = 0;
+    auto pointless = pointless_.begin();
+    for (std::size_t i = 0; i < data_.rows.size(); ++i) {
+      const bool here = pointless != pointless_.end() && *pointless == i;
+      if (here) ++pointless;
+      moved_to[i] = static_cast<std::int64_t>(kept);
+      if (here && !is_end[i]) {
+        missing_lines_.push_back(data_.rows[i].line);
+        continue;
+      }
+      if (here) data_.rows[i].kind = MeasurementKind::joints;
+      if (kept != i) {
+        data_.rows[kept] = std::move(data_.rows[i]);
+        if (!commanded_.empty()) data_.commanded[kept] = data_.commanded[i];
+        if (temperature_) data_.temperature[kept] = data_.temperature[i];
+        if (direction_) data_.direction[kept] = std::move(data_.direction[i]);
+      }
+      ++kept;
+    }
+    data_.rows.resize(kept);
+    if (!commanded_.empty()) data_.commanded.resize(kept);
+    if (temperature_) data_.temperature.resize(kept);
+    if (direction_) data_.direction.resize(kept);
+    keep_used(data_.groups, &Measurement::group);
+    keep_used(data_.targets, &Measurement::target);
+    for (const Link& link : links_) {
+      // Rows with a distance are never dropped, and neither are their ends.
+      Measurement& row = data_.rows[static_cast<std::size_t>(moved_to[link.row])];
+      row.other_row = moved_to[static_cast<std::size_t>(row.other_row)];
+    }
+  }
+
+  // Drops the names that no row is left to carry.
+  void keep_used(std::vector<std::string>& names, std::uint32_t Measurement::*index) {
+    constexpr std::uint32_t unseen = 0xFFFFFFFFU;
+    std::vector<std::uint32_t> now(names.size(), unseen);
+    std::vector<std::string> used;
+    for (Measurement& row : data_.rows) {
+      std::uint32_t& place = now[row.*index];
+      if (place == unseen) {
+        place = static_cast<std::uint32_t>(used.size());
+        used.push_back(std::move(names[row.*index]));
+      }
+      row.*index = place;
+    }
+    names = std::move(used);
+  }
+
+  void add_notes() {
+    if (missing_lines_.empty()) return;
+    std::string lines;
+    for (std::size_t k = 0; k < missing_lines_.size() && k < 10; ++k) {
+      lines += (k == 0 ? "" : ", ") + std::to_string(missing_lines_[k]);
+    }
+    if (missing_lines_.size() > 10) lines += ", ...";
+    data_.notes.push_back(csv_.path() + ": " + std::to_string(missing_lines_.size()) +
+                          (missing_lines_.size() == 1 ? " row" : " rows") +
+                          " without a measured point (0, 0, 0 or empty) left out: line " + lines + ".");
+  }
+
+  struct Link {
+    std::size_t row;
+    std::string to;
+    long line;
+  };
+
+  Csv csv_;
+  Columns columns_;
+  const Robot& robot_;
+  Dataset data_;
+  std::vector<Column> q_, commanded_, position_, sigmas_, quaternion_, vector_;
+  Column distance_, to_, id_, group_, target_, sigma_, temperature_, direction_;
+  Names group_names_, target_names_;
+  std::vector<Link> links_;
+  std::vector<std::size_t> pointless_;
+  std::vector<long> missing_lines_;
+  std::size_t seen_ = 0;
+};
+
+}  // namespace
+
+Dataset parse_dataset(const std::string& text, const std::string& path, const Robot& robot) {
+  return Reader(text, path, robot).read();
+}
+
+Dataset read_dataset(const std::string& path, const Robot& robot) {
+  return parse_dataset(read_file(path, "a measurement file"), path, robot);
+}
+
+}  // namespace mdhcal::offline
