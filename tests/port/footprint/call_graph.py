@@ -30,6 +30,12 @@ class CallGraph:
         self._read_image(target, image)
 
     def _read_image(self, target, image):
+        # One function may have several names (__aeabi_dadd, __adddf3); the disassembly shows one of them.
+        named = {}
+        for line in target.tool("nm", image).splitlines():
+            words = line.split()
+            if len(words) == 3 and words[1] in "Tt":
+                named.setdefault(words[0], []).append(words[2])
         name = None
         for line in target.tool("objdump", "-d", image).splitlines():
             begin = re.match(r"[0-9a-f]+ <(.+)>:", line)
@@ -57,6 +63,12 @@ class CallGraph:
             callee = re.search(r"<([^+>]+)>", operands)
             if re.match(r"b", operation) and callee and callee.group(1) != name:
                 self.calls[name].add(callee.group(1))
+        for names in named.values():
+            shown = [name for name in names if name in self.frame]
+            for name in names:
+                if shown and name not in self.frame:
+                    self.frame[name] = self.frame[shown[0]]
+                    self.calls[name] = self.calls[shown[0]]
 
     def bound(self, function):
         """Bytes, and the names that have no bound of their own."""

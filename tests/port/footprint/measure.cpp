@@ -7,6 +7,7 @@
 
 #include "counter.hpp"
 #include "inputs.hpp"
+#include "mdhcal/inverse.hpp"
 #include "mdhcal/kinematics.hpp"
 
 namespace {
@@ -42,9 +43,11 @@ template <class Real>
 struct State {
   static inline Arm<Real> arm;
   static inline Real q[max_joints];
-  static inline Pose<Real> pose;
+  static inline Pose<Real> pose, target;
   static inline Jacobian<Real> jacobian;
   static inline Frame<Real> frames[max_joints + 2];
+  static inline TickOptions<Real> options;
+  static inline TickReport<Real> report;
   static inline Status status;
 };
 
@@ -54,6 +57,49 @@ void set_joints(const double (&q_rad)[6]) {
 }
 
 Geometry geometry;
+
+// One tick at 1 kHz: targets up to 3 mrad a joint away, or anywhere, with a step limit of pi mrad a joint.
+template <class Real>
+void measure_tick() {
+  using S = State<Real>;
+  const char* precision = std::is_same_v<Real, double> ? "double" : "float";
+  const auto call = [] { S::status = tick(S::arm, S::options, S::pose, S::q, &S::report); };
+  S::options = default_tick_options(S::arm);
+  for (Real& step : S::options.max_step) step = static_cast<Real>(0.00314);
+  double q_rad[6];
+  Random random(2);
+  // Double without an FPU for it is software, and no one's servo loop: fewer inputs there.
+  constexpr int count = sizeof(Real) == 8 && (__ARM_FP & 8) == 0 ? input_count / 10 : input_count;
+  bool second = false;  // every input is used twice: for the instructions, then for the stack
+  for (Set set : {Set::regular, Set::near_singular}) {
+    const auto prepare = [&](int) {
+      if (!second) {
+        double target_rad[6];
+        joints(set, random, q_rad);
+        for (int k = 0; k < 6; ++k) target_rad[k] = q_rad[k] + random.uniform(-0.003, 0.003);
+        set_joints<Real>(target_rad);
+        S::status = forward(S::arm, S::q, S::target);
+      }
+      second = !second;
+      S::pose = S::target;
+      set_joints<Real>(q_rad);
+    };
+    measure("tick", precision, set == Set::regular ? "regular" : "near-singular", prepare, call, count);
+  }
+  const auto far = [&](int i) {
+    if (!second) {
+      joints(i % 2 == 0 ? Set::regular : Set::near_singular, random, q_rad);
+      set_joints<Real>(q_rad);
+      S::status = forward(S::arm, S::q, S::target);
+      for (Real& p : S::target.position_m) p = static_cast<Real>(random.uniform(-2, 2));
+      joints(i % 3 == 0 ? Set::regular : Set::near_singular, random, q_rad);
+    }
+    second = !second;
+    S::pose = S::target;
+    set_joints<Real>(q_rad);
+  };
+  measure("tick", precision, "far", far, call, count);
+}
 
 template <class Real>
 void measure_kinematics() {
@@ -83,4 +129,6 @@ int main() {
   geometry = calibrated_arm();
   measure_kinematics<double>();
   measure_kinematics<float>();
+  measure_tick<double>();
+  measure_tick<float>();
 }
