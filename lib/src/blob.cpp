@@ -75,6 +75,7 @@ Status check_reserved(const std::uint8_t* bytes) {
   }
   if (own_minor) {
     zero = zero && all_zero(bytes + at::header_reserved, at::header_reserved_size) &&
+           all_zero(bytes + at::tolerances_reserved, at::tolerances_reserved_size) &&
            all_zero(bytes + at::provenance_reserved, at::provenance_reserved_size) &&
            all_zero(bytes + at::algorithm_reserved, at::key_id - at::algorithm_reserved) &&
            all_zero(bytes + at::key_reserved, at::signature - at::key_reserved) &&
@@ -169,10 +170,14 @@ Status check_values(const std::uint8_t* bytes) {
       valid = valid && within(load_f64(record + at::target_point + 8 * k), max_length_m);
     }
   }
-  for (std::size_t k = 0; k < 4; ++k) {
+  for (std::size_t k = 0; k < 2; ++k) {
     const double tolerance = load_f64(bytes + at::tolerances + 8 * k);
+    const float float_tolerance = load_f32(bytes + at::float_tolerances + 4 * k);
+    valid = valid && tolerance > 0.0 && tolerance <= 1.0 && float_tolerance > 0.0F && float_tolerance <= 1.0F;
+  }
+  for (std::size_t k = 0; k < 4; ++k) {
     const double error_m = load_f64(bytes + at::held_out + 8 * k);
-    valid = valid && tolerance > 0.0 && tolerance <= 1.0 && error_m >= 0.0 && error_m <= max_length_m;
+    valid = valid && error_m >= 0.0 && error_m <= max_length_m;
   }
   const double lambda = load_f64(bytes + at::lambda);
   valid = valid && lambda >= 0.0 && lambda <= max_lambda;

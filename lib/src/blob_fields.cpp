@@ -107,7 +107,7 @@ void load_model(const std::uint8_t* bytes, Model& model) noexcept {
   model.family = static_cast<PostureFamily>(load_i32(bytes + at::family));
   model.security_counter = load_u32(bytes + at::security_counter);
   model.tolerances = {load_f64(bytes + at::tolerances), load_f64(bytes + at::tolerances + 8),
-                      load_f64(bytes + at::tolerances + 16), load_f64(bytes + at::tolerances + 24)};
+                      load_f32(bytes + at::float_tolerances), load_f32(bytes + at::float_tolerances + 4)};
   load_provenance(bytes, model.provenance);
   model.arithmetic_id = load_u32(bytes + at::arithmetic_id);
   model.double_vector_count = load_i32(bytes + at::double_vector_count);

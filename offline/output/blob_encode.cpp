@@ -116,9 +116,10 @@ Blob encode(const Model& model) {
     writer.reals(record + at::target_point, model.target[i].flange_p_m, 3);
   }
   const Tolerances& tolerances = model.tolerances;
-  const double bounds[4] = {tolerances.position_m, tolerances.rotation_rad, tolerances.float_position_m,
-                            tolerances.float_rotation_rad};
-  writer.reals(at::tolerances, bounds, 4);
+  writer.real(at::tolerances, tolerances.position_m);
+  writer.real(at::tolerances + 8, tolerances.rotation_rad);
+  writer.real(at::float_tolerances, tolerances.float_position_m);
+  writer.real(at::float_tolerances + 4, tolerances.float_rotation_rad);
   write_provenance(writer, provenance);
   for (std::size_t i = 0; i < static_cast<std::size_t>(model.double_vector_count); ++i) {
     writer.vector(at::double_vectors + i * at::double_vector_size, model.double_vector[i]);

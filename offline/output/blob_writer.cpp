@@ -8,13 +8,14 @@
 #include "mdhcal/arm.hpp"
 #include "offline/error.hpp"
 #include "offline/output/posture_family.hpp"
+#include "offline/output/self_test_vectors.hpp"
 
 namespace mdhcal::offline {
 
 namespace {
 
-// The inverse's tolerances that every blob states: what double attains, and float at a reach of metres.
-constexpr Tolerances default_tolerances{1e-10, 1e-10, 1e-5, 1e-5};
+// The inverse's tolerances that every blob states, those of default_tick_options().
+constexpr Tolerances default_tolerances{1e-10, 1e-10, 5e-6F, 5e-6F};
 
 template <std::size_t size>
 void put_text(const Robot& robot, const char* what, const std::string& text, char (&field)[size]) {
@@ -142,6 +143,7 @@ Model make_model(const Robot& robot, const Provenance& provenance) {
   put_targets(robot, model);
   model.tolerances = default_tolerances;
   put_provenance(robot, provenance, model.provenance);
+  fill_self_test_vectors(model);
   return model;
 }
 

@@ -4,7 +4,10 @@
 
 #include <gtest/gtest.h>
 
+#include <random>
+
 #include "mdhcal/arm.hpp"
+#include "mdhcal/self_test.hpp"
 #include "offline/error.hpp"
 #include "tests/output/sample_robot.hpp"
 
@@ -59,6 +62,45 @@ TEST(BlobWriter, TheToolIsATargetWhereNoneIsNamed) {
   const Model model = decoded(make_blob(robot, Provenance{}));
   ASSERT_EQ(model.target_count, 1);
   EXPECT_STREQ(model.target[0].name, "tool");
+}
+
+// Arms of one to eight joints, some sliding, some with limits: each blob carries its full set of vectors, and they hold
+// here bit for bit, under another arithmetic id within the tolerance.
+TEST(BlobWriter, EveryKindOfArmPassesItsSelfTest) {
+  std::mt19937_64 random(7);
+  const auto unit = [&] { return static_cast<double>(random() >> 11U) * 0x1p-53; };
+  for (int trial = 0; trial < 200; ++trial) {
+    Robot robot;
+    robot.geometry.joint_count = 1 + trial % 8;
+    for (std::size_t i = 0; i < static_cast<std::size_t>(robot.geometry.joint_count); ++i) {
+      robot.nominal[i] = {(unit() - 0.5) * 4, unit() - 0.5, unit() * 6, unit() - 0.5, 0.0};
+      robot.geometry.link[i] = robot.nominal[i];
+      robot.geometry.link[i].a_m += 0.002 * unit();
+      Joint& joint = robot.geometry.joint[i];
+      joint.kind = unit() < 0.15 ? JointKind::prismatic : JointKind::revolute;
+      joint.sign = unit() < 0.5 ? -1 : 1;
+      joint.has_min = unit() < 0.5 ? 1 : 0;
+      joint.has_max = unit() < 0.5 ? 1 : 0;
+      joint.min = -0.1 - 3 * unit();
+      joint.max = 0.1 + 3 * unit();
+    }
+    robot.geometry.last_T_flange.quaternion[0] = 1.0;
+    Model model = decoded(make_blob(robot, Provenance{}));
+    ASSERT_EQ(model.double_vector_count, 4);
+    ASSERT_EQ(model.float_vector_count, 4);
+    Arm<double> arm{};
+    Arm<float> arm_float{};
+    ASSERT_EQ(make_arm(model.geometry, arm), Status::ok);
+    ASSERT_EQ(make_arm(model.geometry, arm_float), Status::ok);
+    EXPECT_EQ(self_test(model, arm), Status::ok) << trial;
+    EXPECT_EQ(self_test(model, arm_float), Status::ok) << trial;
+    model.arithmetic_id ^= 1U;
+    EXPECT_EQ(self_test(model, arm), Status::self_test_tolerance) << trial;
+    EXPECT_EQ(self_test(model, arm_float), Status::self_test_tolerance) << trial;
+    for (const auto& vector : model.double_vector) {
+      EXPECT_EQ(vector.inverse_status, 0) << trial << ": no easy vector was found";
+    }
+  }
 }
 
 TEST(BlobWriter, RefusesWhatAControllerWouldRefuse) {

@@ -28,7 +28,7 @@ def start(flags, joints, targets, family, counter, arithmetic, doubles, floats):
     blob[0:4] = b"\xA0\x6B\xBC\xCC"
     blob[4:8] = b"\x01\x00\x00\x00"
     blob[8:12] = b"\x00\x10\x00\x00"
-    blob[12:16] = b"\x3E\xBF\x8D\x42"
+    blob[12:16] = b"\xE6\x1C\x46\x0D"
     put(blob, 16, "8I", flags, joints, targets, family, counter, arithmetic, doubles, floats)
     return blob
 
@@ -58,7 +58,7 @@ def every_field():
     for i in range(8):
         put_text(blob, 1824 + 40 * i, 16, "target-%d" % i if i else "")
         put(blob, 1824 + 40 * i + 16, "3d", 0.1 + i, -0.2 - i, 0.3 * i)
-    put(blob, 2144, "4d", 1e-10, 2e-10, 1e-5, 2e-5)
+    put(blob, 2144, "2d2f", 1e-10, 2e-10, 1e-5, 2e-5)
     put_text(blob, 2176, 32, "golden_blob.py for format 1.0")
     put_text(blob, 2208, 16, "2026-11-21")
     put_text(blob, 2224, 16, "rpim")
@@ -120,7 +120,7 @@ def six_joints():
         put(blob, 160 + 192 * i + 72, "5d", *corrected[i])
     put(blob, 160 + 192 * 2 + 112, "8d", 0, 0.25, 0, 0, 0, 0, 0, 0)
     put(blob, 1696, "7d", 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
-    put(blob, 2144, "4d", 1e-10, 1e-10, 1e-5, 1e-5)
+    put(blob, 2144, "2d2f", 1e-10, 1e-10, 5e-6, 5e-6)
     put_text(blob, 2176, 32, "golden_blob.py for format 1.0")
 
     def forward(q):

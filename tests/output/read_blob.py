@@ -46,13 +46,13 @@ def read(blob):
 
     if len(blob) != 4096:
         raise Refused("size")
-    if get(0, "I") != 0xCCBC6BA0 or get(4, "H") != 1 or get(8, "I") != 4096 or get(12, "I") != 0x428DBF3E:
+    if get(0, "I") != 0xCCBC6BA0 or get(4, "H") != 1 or get(8, "I") != 4096 or get(12, "I") != 0x0D461CE6:
         raise Refused("magic, version, size or layout id")
     if get(4092, "I") != zlib.crc32(blob[:4092]):
         raise Refused("CRC-32")
     reserved(3520, 448)
     if get(6, "H") == 0:
-        for offset, size in ((48, 16), (2320, 16), (3972, 4), (3984, 16), (4064, 28),
+        for offset, size in ((48, 16), (2168, 8), (2320, 16), (3972, 4), (3984, 16), (4064, 28),
                              (2556, 4), (2748, 4), (2940, 4), (3132, 4)):
             reserved(offset, size)
     return {
@@ -63,7 +63,7 @@ def read(blob):
         "joints": [joint(160 + 192 * i) for i in range(8)],
         "last_T_flange": pose(1696), "tracker_T_base": pose(1760),
         "targets": [{"name": text(1824 + 40 * i, 16), "point": get(1840 + 40 * i, "3d")} for i in range(8)],
-        "tolerances": get(2144, "4d"), "tool_version": text(2176, 32), "date": text(2208, 16),
+        "tolerances": get(2144, "2d2f"), "tool_version": text(2176, 32), "date": text(2208, 16),
         "method": text(2224, 16), "measurements_sha256": blob[2240:2272].hex(), "lambda_rule": text(2272, 32),
         "lambda": get(2304, "d"), "pose_count": get(2312, "I"), "held_out_count": get(2316, "I"),
         "held_out": get(2336, "4d"),

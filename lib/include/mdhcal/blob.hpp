@@ -35,8 +35,8 @@ struct Target {
 
 /// When an inverse is done, in double and in float. Each in (0, 1].
 struct Tolerances {
-  double position_m, rotation_rad;              ///< [m], [rad]
-  double float_position_m, float_rotation_rad;  ///< [m], [rad]
+  double position_m, rotation_rad;             ///< [m], [rad]
+  float float_position_m, float_rotation_rad;  ///< [m], [rad]
 };
 
 /// Where a calibration comes from. What is absent is zero; dates and figures are for people, nothing depends on them.

@@ -15,7 +15,7 @@ inline constexpr std::uint32_t magic_value = 0xCCBC6BA0U;
 inline constexpr std::uint16_t major_value = 1;
 inline constexpr std::uint16_t minor_value = 0;
 /// CRC-32 of the canonical field list in docs/blob.md, constant within a major version.
-inline constexpr std::uint32_t layout_id_value = 0x428DBF3EU;
+inline constexpr std::uint32_t layout_id_value = 0x0D461CE6U;
 
 /// Bits of `flags`. A reader refuses an unknown bit from `critical_flags`; other unknown bits only in its own minor.
 inline constexpr std::uint32_t flag_base = 1U << 0U;        ///< tracker_T_base is stated
@@ -98,12 +98,15 @@ inline constexpr std::size_t target_name_size = 16;
 inline constexpr std::size_t target_point = 16;
 static_assert(targets == 1824);
 
-// Tolerances of the inverse: position and rotation for double, then for float, 4 f64.
+// Tolerances of the inverse: position and rotation, 2 f64, then the same for float, 2 f32.
 inline constexpr std::size_t tolerances = targets + target_slots * target_size;
-static_assert(tolerances == 2144);
+inline constexpr std::size_t float_tolerances = tolerances + 16;
+inline constexpr std::size_t tolerances_reserved = float_tolerances + 8;  // 8 bytes, ancillary
+inline constexpr std::size_t tolerances_reserved_size = 8;
+static_assert(tolerances == 2144 && float_tolerances == 2160 && tolerances_reserved == 2168);
 
 // Provenance.
-inline constexpr std::size_t tool_version = tolerances + 32;
+inline constexpr std::size_t tool_version = tolerances_reserved + tolerances_reserved_size;
 inline constexpr std::size_t tool_version_size = 32;
 inline constexpr std::size_t date = tool_version + tool_version_size;
 inline constexpr std::size_t date_size = 16;

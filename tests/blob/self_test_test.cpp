@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: MIT
+#include "mdhcal/self_test.hpp"
+
+#include <gtest/gtest.h>
+
+#include "mdhcal/inverse.hpp"
+#include "mdhcal/kinematics.hpp"
+#include "tests/blob/support.hpp"
+
+namespace mdhcal::test {
+namespace {
+
+template <class Real>
+Real* inverse_of(Model& model) {
+  if constexpr (sizeof(Real) == 8) {
+    return model.double_vector[1].inverse_q;
+  } else {
+    return model.float_vector[1].inverse_q;
+  }
+}
+
+template <class Real>
+Pose<Real>& pose_of(Model& model) {
+  if constexpr (sizeof(Real) == 8) {
+    return model.double_vector[1].base_T_flange;
+  } else {
+    return model.float_vector[1].base_T_flange;
+  }
+}
+
+template <class Real>
+class SelfTest : public testing::Test {
+ protected:
+  void SetUp() override {
+    ASSERT_EQ(decode(golden::six_joints, blob_size, {}, *model), Status::ok);
+    ASSERT_EQ(make_arm(model->geometry, arm), Status::ok);
+  }
+  std::unique_ptr<Model> model = std::make_unique<Model>();
+  Arm<Real> arm{};
+};
+using Precisions = testing::Types<double, float>;
+TYPED_TEST_SUITE(SelfTest, Precisions);
+
+// The golden vectors are plain 4x4 products under nobody's arithmetic id.
+TYPED_TEST(SelfTest, HoldsTheToleranceAgainstForeignArithmetic) {
+  EXPECT_EQ(self_test(*this->model, this->arm), Status::self_test_tolerance);
+}
+
+TYPED_TEST(SelfTest, FailsBeyondTheTolerance) {
+  const TypeParam bound = sizeof(TypeParam) == 8 ? TypeParam(2e-9) : TypeParam(2e-5);
+  Model& blob = *this->model;
+  inverse_of<TypeParam>(blob)[4] += bound;
+  EXPECT_EQ(self_test(blob, this->arm), Status::self_test_failed);
+  inverse_of<TypeParam>(blob)[4] -= bound;
+  EXPECT_EQ(self_test(blob, this->arm), Status::self_test_tolerance);
+  this->arm.link[3].a_m += bound;
+  EXPECT_EQ(self_test(blob, this->arm), Status::self_test_failed);
+  this->arm.link[3].a_m -= bound;
+  this->arm.link[5].theta_rad += bound;
+  EXPECT_EQ(self_test(blob, this->arm), Status::self_test_failed);
+}
+
+TYPED_TEST(SelfTest, ComparesBitsUnderItsOwnArithmeticId) {
+  Model& blob = *this->model;
+  blob.arithmetic_id = arithmetic_id;
+  EXPECT_EQ(self_test(blob, this->arm), Status::self_test_failed) << "the golden bits are not this library's";
+  // Make them so.
+  const auto own = [&](auto& vector) {
+    for (std::size_t v = 0; v < 2; ++v) {
+      ASSERT_EQ(forward(this->arm, vector[v].q, vector[v].base_T_flange), Status::ok);
+      TickOptions<TypeParam> options = default_tick_options(this->arm);
+      options.position_tolerance_m = sizeof(TypeParam) == 8 ? TypeParam(1e-10) : TypeParam(5e-6F);
+      options.rotation_tolerance_rad = options.position_tolerance_m;
+      for (std::size_t i = 0; i < 6; ++i) {
+        vector[v].inverse_q[i] = vector[v].q[i] + (i % 2 == 0 ? TypeParam(0.015625) : TypeParam(-0.015625));
+      }
+      ASSERT_EQ(tick(this->arm, options, vector[v].base_T_flange, vector[v].inverse_q), Status::ok);
+    }
+  };
+  if constexpr (sizeof(TypeParam) == 8) {
+    own(blob.double_vector);
+  } else {
+    own(blob.float_vector);
+  }
+  EXPECT_EQ(self_test(blob, this->arm), Status::ok);
+  // One bit of one number fails it.
+  auto* bits = reinterpret_cast<std::uint8_t*>(pose_of<TypeParam>(blob).position_m);
+  bits[0] ^= 1U;
+  EXPECT_EQ(self_test(blob, this->arm), Status::self_test_failed);
+  bits[0] ^= 1U;
+  bits = reinterpret_cast<std::uint8_t*>(inverse_of<TypeParam>(blob));
+  bits[0] ^= 1U;
+  EXPECT_EQ(self_test(blob, this->arm), Status::self_test_failed);
+}
+
+TYPED_TEST(SelfTest, FailsOnAnotherStatusOrWithoutVectors) {
+  this->model->double_vector[0].inverse_status = 4;
+  this->model->float_vector[0].inverse_status = 4;
+  EXPECT_EQ(self_test(*this->model, this->arm), Status::self_test_failed);
+  this->model->double_vector_count = 0;
+  this->model->float_vector_count = 0;
+  EXPECT_EQ(self_test(*this->model, this->arm), Status::self_test_failed);
+}
+
+}  // namespace
+}  // namespace mdhcal::test
