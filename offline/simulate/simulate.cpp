@@ -108,18 +108,6 @@ Pose<double> random_base(Random& random) {
   return pose;
 }
 
-std::array<double, max_joints> random_readings(const Geometry& geometry, Random& random) {
-  std::array<double, max_joints> q{};
-  for (std::size_t i = 0; i < static_cast<std::size_t>(geometry.joint_count); ++i) {
-    const Joint& joint = geometry.joint[i];
-    const double span = joint.kind == JointKind::revolute ? std::numbers::pi : 0.5;
-    const double low = joint.has_min != 0 ? joint.min : (joint.has_max != 0 ? joint.max - 2 * span : -span);
-    const double high = joint.has_max != 0 ? joint.max : low + 2 * span;
-    q[i] = random.uniform(low, high);
-  }
-  return q;
-}
-
 // Measures `configurations` random configurations of the true robot.
 Dataset measure(const Robot& truth, const Arm<double>& arm, std::size_t configurations,
                 const SimulationOptions& options, const std::string& name, Random& random) {
@@ -188,6 +176,18 @@ std::vector<std::size_t> add_outliers(Dataset& set, const SimulationOptions& opt
 }
 
 }  // namespace
+
+std::array<double, max_joints> random_readings(const Geometry& geometry, Random& random) {
+  std::array<double, max_joints> q{};
+  for (std::size_t i = 0; i < static_cast<std::size_t>(geometry.joint_count); ++i) {
+    const Joint& joint = geometry.joint[i];
+    const double span = joint.kind == JointKind::revolute ? std::numbers::pi : 0.5;
+    const double low = joint.has_min != 0 ? joint.min : (joint.has_max != 0 ? joint.max - 2 * span : -span);
+    const double high = joint.has_max != 0 ? joint.max : low + 2 * span;
+    q[i] = random.uniform(low, high);
+  }
+  return q;
+}
 
 Simulation simulate(const Robot& robot, const SimulationOptions& options) {
   check_options(options);

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
 #include "offline/measure/dataset.hpp"
 #include "offline/robot/robot.hpp"
+#include "offline/simulate/random.hpp"
 
 namespace mdhcal::offline {
 
@@ -39,12 +41,14 @@ struct Simulation {
   std::vector<std::size_t> outlier_rows; ///< indices into train.rows, ascending
 };
 
-/// Gives the robot errors and measures it in random configurations within its joint limits (half a turn or half a
-/// metre each way where it states none).
+/// Gives the robot errors and measures it in random configurations within its joint limits.
 /// Errors go to exactly those parameters that a fit of base and target leaves free: link 1
 /// (but for beta) and the last link's d and offset stay nominal, and where axis i is within 5 degrees of parallel to
 /// axis i + 1, beta_i takes the place of d_i. So the truth is comparable, parameter by parameter, with a calibration.
 /// The same robot and options give the same result. Throws InputError if an option is out of its range.
 Simulation simulate(const Robot& robot, const SimulationOptions& options);
+
+/// Readings drawn evenly within the joint limits: half a turn or half a metre each way where the robot states none.
+std::array<double, max_joints> random_readings(const Geometry& geometry, Random& random);
 
 }  // namespace mdhcal::offline
