@@ -20,9 +20,9 @@ inline std::int32_t task_rank(Task task) {
 }
 
 /// Applies what the task asks for, unit-free and weighted, to a velocity of the flange. `z` is the flange's z axis.
-inline void to_task(const TickState& state, const Real* z, Real position_weight, Real rotation_weight, Real* column) {
+inline void to_task(const TickState& state, const Real* z, Real rotation_weight, Real* column) {
   const Task task = state.options->task;
-  const Real position_scale = position_weight / state.length_m;
+  const Real position_scale = Real{1} / state.length_m;
   for (int k = 0; k < 3; ++k) column[k] *= position_scale;
   for (int k = 3; k < 6; ++k) column[k] *= rotation_weight;
   if (task == Task::position) {
@@ -37,7 +37,7 @@ inline void to_task(const TickState& state, const Real* z, Real position_weight,
 
 /// The task's Jacobian by unit-free joint motion, in the columns that `free_mask` names; the others are zero.
 inline void task_jacobian(const TickState& state, const Jacobian<Real>& coordinates, const Real* z,
-                          Real position_weight, Real rotation_weight, std::uint32_t free_mask, SingularBasis& basis) {
+                          Real rotation_weight, std::uint32_t free_mask, SingularBasis& basis) {
   const Arm<Real>& arm = *state.arm;
   for (std::int32_t j = 0; j < arm.joint_count; ++j) {
     Real* column = basis.us[j];
@@ -49,7 +49,7 @@ inline void task_jacobian(const TickState& state, const Jacobian<Real>& coordina
       const Real ratio = unit * arm.map[i][j];
       for (int k = 0; k < 6; ++k) column[k] += ratio * coordinates.column[i][k];
     }
-    to_task(state, z, position_weight, rotation_weight, column);
+    to_task(state, z, rotation_weight, column);
   }
 }
 
@@ -76,18 +76,51 @@ struct Directions {
   Real slope[max_joints];   ///< s_k; for the weakest direction the secant of the second-order model
   Real wanted[max_joints];  ///< s_k c_k, that is slope times what is asked for
   bool held;                ///< the weakest direction ends at a fold short of the target
+  bool rests;               ///< the weakest direction waits for the singularity to pass; decided once an attempt
+  bool decided;
+  bool folds;               ///< the weakest direction ends at a fold, as a stretched elbow's does
 };
 
-/// Where the weakest direction may go no nearer to a fold while the target is beyond it.
+/// How near to a fold the weakest direction may go while the target is beyond it, as a slope.
 constexpr Real fold_margin = Real(0.005);
 /// A direction that bends less than this does not fold [1 / rad].
 constexpr Real fold_curvature = Real(0.05);
 
+/// Below this slope a direction that no fold ends (a wrist's) rests while the arm approaches the singularity.
+constexpr Real untracked_below = Real(0.01);
+
+/// Lets the weakest direction rest if the strong ones take the arm towards its singularity. Following the pose there
+/// as far as the limits go would leave the joints far from where they are needed on the other side; at rest the
+/// error stays that of the miss, and is caught up on leaving.
+inline void decide_to_rest(const TickState& state, const Jacobian<Real>& coordinates, const Real* z,
+                           Real rotation_weight, const SingularBasis& basis, const Real* u, Directions& directions) {
+  const std::int32_t joints = state.arm->joint_count;
+  const std::int32_t weakest = directions.count - 1;
+  Real along[max_joints] = {};
+  for (std::int32_t k = 0; k < weakest; ++k) {
+    const Real square = basis.s[k] * basis.s[k];
+    const Real t = square > Real{0} ? directions.wanted[k] / square : Real{0};
+    for (std::int32_t j = 0; j < joints; ++j) along[j] += t * basis.v[k][j];
+  }
+  // The slope's change is u . H(along, v); H is had from squares: H(a + v, a + v) - H(a - v, a - v) = 4 H(a, v).
+  Real slope_change = 0;
+  for (int sign = 1; sign >= -1; sign -= 2) {
+    Real sum[max_joints] = {};
+    Real acceleration[6];
+    for (std::int32_t j = 0; j < joints; ++j) sum[j] = along[j] + static_cast<Real>(sign) * basis.v[weakest][j];
+    bend(state, coordinates, sum, acceleration);
+    to_task(state, z, rotation_weight, acceleration);
+    slope_change += static_cast<Real>(sign) * dot6(u, acceleration);
+  }
+  directions.rests = slope_change < Real{0};
+}
+
 /// Prepares the step for the weighted error. Along the weakest direction u the error behaves as s t + h t^2 / 2 with
 /// h = u . acceleration; its root nearest to zero stays on this side of the fold, where the slope s + h t vanishes.
-inline void plan_step(const TickState& state, const Jacobian<Real>& coordinates, const Real* z, Real position_weight,
-                      Real rotation_weight, const SingularBasis& basis, std::int32_t rank, const Real* error,
-                      Directions& directions) {
+/// If the target is beyond the fold, the step ends short of it: a tenth of the way, or at the slope `margin`.
+inline void plan_step(const TickState& state, const Jacobian<Real>& coordinates, const Real* z, Real rotation_weight,
+                      Real margin, Real least_curvature, const SingularBasis& basis, std::int32_t rank,
+                      const Real* error, Directions& directions) {
   directions.count = rank;
   directions.held = false;
   for (std::int32_t k = 0; k < rank; ++k) {
@@ -116,11 +149,19 @@ inline void plan_step(const TickState& state, const Jacobian<Real>& coordinates,
   const Real c = dot6(u, error);
   Real acceleration[6];
   bend(state, coordinates, basis.v[weakest], acceleration);
-  to_task(state, z, position_weight, rotation_weight, acceleration);
+  to_task(state, z, rotation_weight, acceleration);
   const Real h = dot6(u, acceleration);
   const Real weight =
-      square_root(position_weight * position_weight * dot(u, u) + rotation_weight * rotation_weight * dot(u + 3, u + 3));
-  if (!(magnitude(h) > fold_curvature * weight)) return;
+      square_root(dot(u, u) + rotation_weight * rotation_weight * dot(u + 3, u + 3));
+  directions.folds = magnitude(h) > least_curvature * weight;
+  if (!directions.folds) {
+    if (margin > Real{0} && s < untracked_below * weight) {
+      if (!directions.decided) decide_to_rest(state, coordinates, z, rotation_weight, basis, u, directions);
+      directions.decided = true;
+      if (directions.rests) directions.wanted[weakest] = 0;
+    }
+    return;
+  }
   const Real discriminant = s * s + Real{2} * h * c;
   if (discriminant >= Real{0}) {
     const Real secant = Real(0.5) * (s + square_root(discriminant));
@@ -129,7 +170,8 @@ inline void plan_step(const TickState& state, const Jacobian<Real>& coordinates,
     return;
   }
   directions.held = true;
-  const Real room = s - fold_margin * weight;
+  const Real least = Real(0.1) * s;
+  const Real room = s - (margin * weight > least ? margin * weight : least);
   if (!(room > Real{0})) {
     directions.wanted[weakest] = 0;
     directions.slope[weakest] = 1;
