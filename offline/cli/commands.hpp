@@ -1,12 +1,24 @@
 // SPDX-License-Identifier: MIT
-// One function a command; each lives in the file of its name and registers itself with the program.
+// One function a command; each lives in the file of its name and registers itself with the program. A command throws
+// InputError or Refusal (offline/error.hpp), which main() turns into exit status 2 or 1, says things through
+// messages.hpp, prints data on stdout, and ends its help with an example: command->footer("Example:\n  mdhcal ...").
 #pragma once
 
 #include <CLI/CLI.hpp>
 
 namespace mdhcal::offline {
 
+void add_pack(CLI::App& app);
+void add_forward(CLI::App& app);
 void add_simulate(CLI::App& app);
 void add_convert(CLI::App& app);
+
+/// All of them, in the order in which `mdhcal --help` lists them.
+inline void add_commands(CLI::App& app) {
+  add_pack(app);
+  add_forward(app);
+  add_simulate(app);
+  add_convert(app);
+}
 
 }  // namespace mdhcal::offline

@@ -2,13 +2,14 @@
 #include "offline/measure/dataset.hpp"
 
 #include <cmath>
+#include <optional>
 #include <unordered_map>
 
 #include "offline/error.hpp"
 #include "offline/measure/columns.hpp"
 #include "offline/measure/digest.hpp"
+#include "offline/measure/rotation_columns.hpp"
 #include "offline/read_file.hpp"
-#include "offline/robot/rotation.hpp"
 
 namespace mdhcal::offline {
 
@@ -71,14 +72,10 @@ class Reader {
     target_ = columns_.find_text("target");
     sigma_ = columns_.find("sigma", length);
     sigmas_ = columns_.find_all({"sx", "sy", "sz"}, length);
-    quaternion_ = columns_.find_all({"qw", "qx", "qy", "qz"}, plain_number);
-    vector_ = columns_.find_all({"rx", "ry", "rz"}, angle);
+    rotation_.emplace(csv_, columns_, angle);
     temperature_ = columns_.find_text("temperature");
     direction_ = columns_.find_text("direction");
     if (sigma_ && !sigmas_.empty()) csv_.fail_header(sigma_.index, "found beside sx, sy, sz; expected one of the two.");
-    if (!quaternion_.empty() && !vector_.empty()) {
-      csv_.fail_header(vector_[0].index, "found beside qw, qx, qy, qz; expected one kind of rotation.");
-    }
     const std::string unknown = columns_.unknown();
     if (!unknown.empty()) data_.notes.push_back(csv_.path() + ": unknown columns are ignored: " + unknown + ".");
   }
@@ -139,27 +136,9 @@ class Reader {
   }
 
   void read_rotation(Measurement& row) {
-    const auto& columns = quaternion_.empty() ? vector_ : quaternion_;
-    std::size_t empty = 0;
-    for (const Column& column : columns) empty += column.empty(csv_) ? 1U : 0U;
-    if (empty == columns.size()) return;
+    if (!rotation_->found() || rotation_->empty()) return;
     row.kind = MeasurementKind::pose;
-    if (quaternion_.empty()) {
-      row.quaternion = quaternion_of({vector_[0].read(csv_), vector_[1].read(csv_), vector_[2].read(csv_)});
-      return;
-    }
-    double norm = 0;
-    for (std::size_t k = 0; k < 4; ++k) {
-      row.quaternion[k] = quaternion_[k].read(csv_, 2.0);
-      norm += row.quaternion[k] * row.quaternion[k];
-    }
-    norm = std::sqrt(norm);
-    // Files carry a few digits; more than this is no rounding.
-    if (!(std::abs(norm - 1.0) <= 1e-3)) {
-      csv_.fail(quaternion_[0].index, "found a quaternion of norm " + shortest_decimal(norm) + "; expected a norm of 1.");
-    }
-    if (row.quaternion[0] < 0) norm = -norm;
-    for (double& c : row.quaternion) c /= norm;
+    row.quaternion = rotation_->read();
   }
 
   void read_sigma(Measurement& row) {
@@ -307,7 +286,8 @@ class Reader {
   Columns columns_;
   const Robot& robot_;
   Dataset data_;
-  std::vector<Column> q_, commanded_, position_, sigmas_, quaternion_, vector_;
+  std::vector<Column> q_, commanded_, position_, sigmas_;
+  std::optional<RotationColumns> rotation_;
   Column distance_, to_, id_, group_, target_, sigma_, temperature_, direction_;
   Names group_names_, target_names_;
   std::vector<Link> links_;

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: MIT
+#include "offline/output/blob_file.hpp"
+
+#include <algorithm>
+
+#include "offline/error.hpp"
+#include "offline/read_file.hpp"
+
+namespace mdhcal::offline {
+
+Model read_blob(const std::string& path) {
+  const std::string bytes = read_file(path, "a parameter blob");
+  Model model;
+  const Status status =
+      decode(reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size(), DecodeOptions{}, model);
+  if (status != Status::ok) {
+    throw InputError(path, 0, 0,
+                     "The blob is refused: " + std::string(text(status)) + "; found " + std::to_string(bytes.size()) +
+                         " bytes, expected a parameter blob of " + std::to_string(blob_size) + ".");
+  }
+  return model;
+}
+
+Robot robot_of(const Model& model, const std::string& path) {
+  Robot robot;
+  robot.path = path;
+  robot.name = model.name;
+  robot.serial = model.serial;
+  robot.geometry = model.geometry;
+  std::copy(std::begin(model.nominal), std::end(model.nominal), robot.nominal.begin());
+  if (model.has_base == 1) robot.tracker_T_base = model.tracker_T_base;
+  for (std::int32_t k = 0; k < model.target_count; ++k) {
+    const double* p = model.target[k].flange_p_m;
+    robot.targets.push_back({model.target[k].name, {p[0], p[1], p[2]}});
+  }
+  return robot;
+}
+
+}  // namespace mdhcal::offline
