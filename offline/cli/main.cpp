@@ -22,12 +22,19 @@ std::string command_line(const CLI::App& app) {
   return chosen.empty() ? app.get_name() : app.get_name() + ' ' + chosen.front()->get_name();
 }
 
+std::vector<const CLI::App*> all_commands(const CLI::App& app) {
+  return app.get_subcommands([](const CLI::App*) { return true; });
+}
+
 // The first word, if it is meant to be a command and is none.
 std::string unknown_command(const CLI::App& app, int argc, char** argv) {
   for (int i = 1; i < argc; ++i) {
     const std::string word = argv[i];
     if (word.empty() || word[0] == '-') continue;
-    return app.get_subcommand_no_throw(word) == nullptr ? word : "";
+    for (const CLI::App* command : all_commands(app)) {
+      if (command->get_name() == word) return {};
+    }
+    return word;
   }
   return {};
 }
@@ -38,7 +45,7 @@ int usage_error(const CLI::App& app, const CLI::ParseError& error, const std::st
   }
   if (!unknown.empty()) {
     std::string commands;
-    for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; })) {
+    for (const CLI::App* command : all_commands(app)) {
       commands += (commands.empty() ? "" : ", ") + command->get_name();
     }
     complain("Found the command \"" + unknown + "\"; expected one of: " + commands + ".");

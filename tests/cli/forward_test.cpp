@@ -17,7 +17,7 @@ using namespace mdhcal::tests;
 TEST(Forward, NominalRobotReproducesThePublishedReferencePositions) {
   const TemporaryFolder folder;
   ASSERT_EQ(run_mdhcal({"pack", example("robot.toml"), "-o", folder / "nominal.blob"}).exit_code, 0);
-  const Run run = run_mdhcal({"forward", folder / "nominal.blob", example("reference.csv")});
+  const Outcome run = run_mdhcal({"forward", folder / "nominal.blob", example("reference.csv")});
   ASSERT_EQ(run.exit_code, 0) << run.err;
   const CsvTable computed(run.out);
   const CsvTable published(read_bytes(example("reference.csv")));
@@ -46,7 +46,7 @@ void expect_exact(const std::string& robot, const std::string& expected_source, 
     joints += '\n';
   }
   write_bytes(folder / "joints.csv", joints);
-  const Run run = run_mdhcal({"forward", folder / "a.blob", folder / "joints.csv"});
+  const Outcome run = run_mdhcal({"forward", folder / "a.blob", folder / "joints.csv"});
   ASSERT_EQ(run.exit_code, 0) << run.err;
   const CsvTable out(run.out);
   ASSERT_EQ(out.rows(), q.size());
@@ -95,7 +95,7 @@ TEST(Forward, FrameAndTargetAreThoseOfTheBlob) {
   EXPECT_NEAR(target.number(0, "x_mm"), 1000, 1e-10);
   EXPECT_NEAR(target.number(0, "y_mm"), 10, 1e-10);
   EXPECT_NEAR(target.number(0, "qz"), std::sqrt(0.5), 1e-15);
-  const Run missing = run_mdhcal({"forward", folder / "r.blob", folder / "q.csv", "--target", "B"});
+  const Outcome missing = run_mdhcal({"forward", folder / "r.blob", folder / "q.csv", "--target", "B"});
   EXPECT_EQ(missing.exit_code, 2);
   EXPECT_NE(missing.err.find("no target \"B\" in the blob; expected one of: \"A\""), std::string::npos) << missing.err;
 }

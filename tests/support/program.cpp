@@ -56,7 +56,7 @@ std::vector<std::string> names_in(const std::string& folder) {
   return names;
 }
 
-Run run_program(const std::string& program, const std::vector<std::string>& arguments, const RunOptions& options) {
+Outcome run_program(const std::string& program, const std::vector<std::string>& arguments, const RunOptions& options) {
   // Streams through files: no pipe can fill up and block the two sides on each other.
   const TemporaryFolder streams;
   write_bytes(streams / "in", options.input);
@@ -85,7 +85,7 @@ Run run_program(const std::string& program, const std::vector<std::string>& argu
   posix_spawn_file_actions_addopen(&actions, 1, out.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
   posix_spawn_file_actions_addopen(&actions, 2, err.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
   if (!options.folder.empty()) posix_spawn_file_actions_addchdir_np(&actions, options.folder.c_str());
-  Run run;
+  Outcome run;
   pid_t process = 0;
   const int error = posix_spawnp(&process, program.c_str(), &actions, nullptr, argv.data(), envp.data());
   posix_spawn_file_actions_destroy(&actions);
@@ -102,7 +102,7 @@ Run run_program(const std::string& program, const std::vector<std::string>& argu
   return run;
 }
 
-Run run_mdhcal(const std::vector<std::string>& arguments, const RunOptions& options) {
+Outcome run_mdhcal(const std::vector<std::string>& arguments, const RunOptions& options) {
   return run_program(MDHCAL_PROGRAM, arguments, options);
 }
 

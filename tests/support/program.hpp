@@ -9,7 +9,7 @@
 namespace mdhcal::tests {
 
 /// What a run left.
-struct Run {
+struct Outcome {
   int exit_code = -1;   ///< 128 + signal if a signal ended it
   std::string out;      ///< stdout
   std::string err;      ///< stderr
@@ -22,10 +22,10 @@ struct RunOptions {
 };
 
 /// Runs the built mdhcal with these arguments (no shell) and waits. SOURCE_DATE_EPOCH is set, so that outputs repeat.
-Run run_mdhcal(const std::vector<std::string>& arguments, const RunOptions& options = {});
+Outcome run_mdhcal(const std::vector<std::string>& arguments, const RunOptions& options = {});
 
 /// The same for any program, searched in PATH.
-Run run_program(const std::string& program, const std::vector<std::string>& arguments, const RunOptions& options = {});
+Outcome run_program(const std::string& program, const std::vector<std::string>& arguments, const RunOptions& options = {});
 
 /// An empty folder, removed with all that is in it at the end of its life.
 class TemporaryFolder {
