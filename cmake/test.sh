@@ -1,0 +1,34 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: MIT
+# test.sh [PRESET...]: installs what is missing, builds and runs every test of the presets named, or of all of them. With
+# CI=true warnings are errors, and tests whose data is missing fail.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+
+presets=("$@")
+if [[ ${#presets[@]} -eq 0 ]]; then
+  bash cmake/setup.sh cross  # CMake itself may be among what is missing
+  mapfile -t presets < <(cmake --list-presets=test | sed -n 's/^ *"\([^"]*\)".*/\1/p')
+elif [[ "${presets[*]}" == host ]]; then
+  bash cmake/setup.sh
+else
+  bash cmake/setup.sh cross
+fi
+source cmake/build.sh
+
+options=()
+if [[ "${CI:-}" == true ]]; then options+=(-DMDHCAL_WERROR=ON); fi
+
+failed=()
+for preset in "${presets[@]}"; do
+  echo "== $preset"
+  if ! { configure "$preset" "${options[@]}" && cmake --build "build/$preset" --parallel "$jobs" &&
+         ctest --preset "$preset" -j "$jobs"; }; then
+    failed+=("$preset")
+  fi
+done
+if [[ ${#failed[@]} -gt 0 ]]; then
+  echo "Failed: ${failed[*]}" >&2
+  exit 1
+fi
+echo "Passed: ${presets[*]}"
