@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
 # setup.sh [GROUP...]: installs the Debian packages of cmake/packages.txt that are missing: those without a group, and
-# those of the groups named ("cross"). Nothing missing: it says nothing. Without the right to install, or off Debian, it
+# those of the groups named ("test", "cross"). Nothing missing: it says nothing. Without the right to install, or off Debian, it
 # names what to install and stops.
 set -euo pipefail
 list="$(dirname "$0")/packages.txt"
@@ -14,7 +14,7 @@ done < <(grep -v -e '^#' -e '^$' "$list")
 if ! command -v dpkg-query >/dev/null || ! command -v apt-get >/dev/null; then
   # The C++ libraries come by CMake's FetchContent; programs cannot.
   missing=()
-  for program in cmake c++ git gnuplot python3; do
+  for program in cmake c++ git gnuplot; do
     command -v "$program" >/dev/null || missing+=("$program")
   done
   if [[ ${#missing[@]} -eq 0 ]]; then exit 0; fi
@@ -25,7 +25,6 @@ fi
 
 missing=()
 for package in "${wanted[@]}"; do
-  # A package that another provides (g++ of another version, say) is not looked for: the names are the real ones.
   status="$(dpkg-query -W -f='${Status}' "$package" 2>/dev/null || true)"
   [[ "$status" == "install ok installed" ]] || missing+=("$package")
 done

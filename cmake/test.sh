@@ -7,12 +7,12 @@ cd "$(dirname "$0")/.."
 
 presets=("$@")
 if [[ ${#presets[@]} -eq 0 ]]; then
-  bash cmake/setup.sh cross  # CMake itself may be among what is missing
+  bash cmake/setup.sh test cross  # CMake itself may be among what is missing
   mapfile -t presets < <(cmake --list-presets=test | sed -n 's/^ *"\([^"]*\)".*/\1/p')
 elif [[ "${presets[*]}" == host ]]; then
-  bash cmake/setup.sh
+  bash cmake/setup.sh test
 else
-  bash cmake/setup.sh cross
+  bash cmake/setup.sh test cross
 fi
 source cmake/build.sh
 
