@@ -10,6 +10,11 @@ namespace mdhcal::offline {
 
 void add_pack(CLI::App& app);
 void add_forward(CLI::App& app);
+void add_show(CLI::App& app);
+void add_diff(CLI::App& app);
+void add_export(CLI::App& app);
+void add_keygen(CLI::App& app);
+void add_sign(CLI::App& app);
 void add_simulate(CLI::App& app);
 void add_convert(CLI::App& app);
 
@@ -17,6 +22,11 @@ void add_convert(CLI::App& app);
 inline void add_commands(CLI::App& app) {
   add_pack(app);
   add_forward(app);
+  add_show(app);
+  add_diff(app);
+  add_export(app);
+  add_keygen(app);
+  add_sign(app);
   add_simulate(app);
   add_convert(app);
 }

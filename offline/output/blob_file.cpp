@@ -2,24 +2,28 @@
 #include "offline/output/blob_file.hpp"
 
 #include <algorithm>
+#include <cstring>
 
 #include "offline/error.hpp"
 #include "offline/read_file.hpp"
 
 namespace mdhcal::offline {
 
-Model read_blob(const std::string& path) {
-  const std::string bytes = read_file(path, "a parameter blob");
-  Model model;
-  const Status status =
-      decode(reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size(), DecodeOptions{}, model);
+BlobFile read_blob_file(const std::string& path) {
+  const std::string text_bytes = read_file(path, "a parameter blob");
+  BlobFile file;
+  const auto* bytes = reinterpret_cast<const std::uint8_t*>(text_bytes.data());
+  const Status status = decode(bytes, text_bytes.size(), DecodeOptions{}, file.model);
   if (status != Status::ok) {
     throw InputError(path, 0, 0,
-                     "The blob is refused: " + std::string(text(status)) + "; found " + std::to_string(bytes.size()) +
+                     "The blob is refused: " + std::string(text(status)) + "; found " + std::to_string(text_bytes.size()) +
                          " bytes, expected a parameter blob of " + std::to_string(blob_size) + ".");
   }
-  return model;
+  std::memcpy(file.bytes.data(), bytes, file.bytes.size());
+  return file;
 }
+
+Model read_blob(const std::string& path) { return read_blob_file(path).model; }
 
 Robot robot_of(const Model& model, const std::string& path) {
   Robot robot;

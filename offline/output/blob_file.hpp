@@ -3,10 +3,18 @@
 
 #include <string>
 
-#include "mdhcal/blob.hpp"
-#include "offline/robot/robot.hpp"
+#include "offline/output/blob_writer.hpp"
 
 namespace mdhcal::offline {
+
+/// A blob file that lib's decoder accepts.
+struct BlobFile {
+  Blob bytes{};
+  Model model{};
+};
+
+/// The bytes and the model of a blob file. Throws InputError naming the file and the reason of the refusal.
+BlobFile read_blob_file(const std::string& path);
 
 /// The model in a blob file, decoded by lib. Throws InputError naming the file and the reason of the refusal.
 Model read_blob(const std::string& path);

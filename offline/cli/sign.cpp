@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: MIT
+#include <memory>
+#include <optional>
+
+#include "offline/cli/commands.hpp"
+#include "offline/output/blob_file.hpp"
+#include "offline/output/folder.hpp"
+#include "offline/output/sign.hpp"
+
+namespace mdhcal::offline {
+
+namespace {
+
+struct Arguments {
+  std::string blob, key, output;
+  std::optional<std::uint32_t> counter;
+};
+
+void run(const Arguments& arguments) {
+  Blob blob = read_blob_file(arguments.blob).bytes;
+  sign(blob, key_of(read_key(arguments.key)), arguments.counter);
+  write_file(arguments.output, {reinterpret_cast<const char*>(blob.data()), blob.size()});
+}
+
+}  // namespace
+
+void add_sign(CLI::App& app) {
+  auto arguments = std::make_shared<Arguments>();
+  CLI::App* command = app.add_subcommand("sign", "Sign a blob with Ed25519");
+  command->add_option("BLOB", arguments->blob, "Parameter blob, signed or not")->required();
+  command->add_option("--key", arguments->key, "Secret key, NAME.key of mdhcal keygen")->required();
+  command->add_option("--counter", arguments->counter, "Security counter to sign in; default: the blob's own");
+  command->add_option("-o,--output", arguments->output, "Signed blob to write")->required();
+  command->footer("Example:\n  mdhcal sign calibration.blob --key metrology.key --counter 3 -o signed.blob");
+  command->callback([arguments] { run(*arguments); });
+}
+
+}  // namespace mdhcal::offline

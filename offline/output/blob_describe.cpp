@@ -1,0 +1,178 @@
+// SPDX-License-Identifier: MIT
+#include "offline/output/blob_describe.hpp"
+
+#include <array>
+#include <nlohmann/json.hpp>
+#include <numbers>
+
+#include "mdhcal/self_test.hpp"
+
+namespace mdhcal::offline {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr double mm = 1e3;
+constexpr double deg = 180.0 / std::numbers::pi;
+
+const char* kind_name(JointKind kind) { return kind == JointKind::revolute ? "revolute" : "prismatic"; }
+
+const char* family_name(PostureFamily family) {
+  switch (family) {
+    case PostureFamily::spherical_wrist: return "spherical wrist";
+    case PostureFamily::parallel_axes: return "three parallel axes";
+    case PostureFamily::general: break;
+  }
+  return "general";
+}
+
+std::string hexadecimal(const std::uint8_t* bytes, std::size_t size) {
+  std::string text;
+  for (std::size_t i = 0; i < size; ++i) {
+    text += "0123456789abcdef"[bytes[i] >> 4];
+    text += "0123456789abcdef"[bytes[i] & 15];
+  }
+  return text;
+}
+
+Json link_json(const Link& link) {
+  return {{"alpha_deg", link.alpha_rad * deg},
+          {"a_mm", link.a_m * mm},
+          {"theta_deg", link.theta_rad * deg},
+          {"d_mm", link.d_m * mm},
+          {"beta_deg", link.beta_rad * deg}};
+}
+
+Link minus(const Link& a, const Link& b) {
+  return {a.alpha_rad - b.alpha_rad, a.a_m - b.a_m, a.theta_rad - b.theta_rad, a.d_m - b.d_m, a.beta_rad - b.beta_rad};
+}
+
+Json point_json(const double (&p)[3]) { return {p[0] * mm, p[1] * mm, p[2] * mm}; }
+
+Json pose_json(const Pose<double>& pose) {
+  return {{"xyz_mm", point_json(pose.position_m)}, {"quaternion_wxyz", pose.quaternion}};
+}
+
+Json optional_text(const char* text) { return text[0] == '\0' ? Json() : Json(text); }
+
+Json joints_json(const Model& model) {
+  Json links = Json::array();
+  for (std::int32_t i = 0; i < model.geometry.joint_count; ++i) {
+    const Joint& joint = model.geometry.joint[i];
+    const bool turns = joint.kind == JointKind::revolute;
+    const double unit = turns ? deg : mm;
+    Json coupling = Json::array();
+    for (std::int32_t j = 0; j < model.geometry.joint_count; ++j) coupling.push_back(joint.coupling[j]);
+    links.push_back({{"joint", kind_name(joint.kind)},
+                     {"sign", joint.sign},
+                     {turns ? "min_deg" : "min_mm", joint.has_min == 1 ? Json(joint.min * unit) : Json()},
+                     {turns ? "max_deg" : "max_mm", joint.has_max == 1 ? Json(joint.max * unit) : Json()},
+                     {"coupling", coupling},
+                     {"nominal", link_json(model.nominal[i])},
+                     {"corrected", link_json(model.geometry.link[i])},
+                     {"deviation", link_json(minus(model.geometry.link[i], model.nominal[i]))}});
+  }
+  return links;
+}
+
+Json provenance_json(const BlobProvenance& from) {
+  Json out{{"tool_version", from.tool_version},
+           {"date", optional_text(from.date)},
+           {"method", optional_text(from.method)},
+           {"lambda", from.has_lambda == 1 ? Json(from.lambda) : Json()},
+           {"lambda_rule", optional_text(from.lambda_rule)}};
+  out["measurements_sha256"] = nullptr;
+  out["pose_count"] = nullptr;
+  out["held_out"] = nullptr;
+  if (from.has_measurements == 1) {
+    out["measurements_sha256"] = hexadecimal(from.measurements_sha256, sizeof from.measurements_sha256);
+    out["pose_count"] = from.pose_count;
+  }
+  if (from.has_held_out == 1) {
+    out["held_out"] = {{"pose_count", from.held_out_count},
+                       {"before", {{"mean_mm", from.mean_before_m * mm}, {"max_mm", from.max_before_m * mm}}},
+                       {"after", {{"mean_mm", from.mean_after_m * mm}, {"max_mm", from.max_after_m * mm}}}};
+  }
+  return out;
+}
+
+template <class Real>
+Json vectors_json(const SelfTestVector<Real>* vectors, std::int32_t count, std::int32_t joints) {
+  Json out = Json::array();
+  const auto readings = [&](const Real* q) {
+    Json list = Json::array();
+    for (std::int32_t i = 0; i < joints; ++i) list.push_back(q[i]);
+    return list;
+  };
+  for (std::int32_t v = 0; v < count; ++v) {
+    const SelfTestVector<Real>& vector = vectors[v];
+    out.push_back({{"q", readings(vector.q)},
+                   {"quaternion_wxyz", vector.base_T_flange.quaternion},
+                   {"position_m", vector.base_T_flange.position_m},
+                   {"inverse_q", readings(vector.inverse_q)},
+                   {"inverse_status", vector.inverse_status}});
+  }
+  return out;
+}
+
+std::uint32_t number(const Blob& bytes, std::size_t offset, std::size_t size) {
+  std::uint32_t value = 0;
+  for (std::size_t k = size; k > 0; --k) value = value << 8U | bytes.at(offset + k - 1);
+  return value;
+}
+
+template <class Real>
+const char* outcome(const Model& model) {
+  Arm<Real> arm{};
+  if (make_arm(model.geometry, arm) != Status::ok) return "not run";
+  switch (self_test(model, arm)) {
+    case Status::ok: return "same bits";
+    case Status::self_test_tolerance: return "within tolerance";
+    default: return "failed";
+  }
+}
+
+}  // namespace
+
+Json describe_json(const BlobFile& file) {
+  const Model& model = file.model;
+  Json targets = Json::array();
+  for (std::int32_t i = 0; i < model.target_count; ++i) {
+    targets.push_back({{"name", model.target[i].name}, {"xyz_mm", point_json(model.target[i].flange_p_m)}});
+  }
+  char crc[16];
+  std::snprintf(crc, sizeof crc, "0x%08X", static_cast<unsigned>(number(file.bytes, blob_layout::crc, 4)));
+  const Authentication& authentication = model.authentication;
+  const bool is_signed = authentication.algorithm != blob_layout::algorithm_none;
+  return {{"format", std::to_string(number(file.bytes, blob_layout::major, 2)) + '.' +
+                         std::to_string(number(file.bytes, blob_layout::minor, 2))},
+          {"crc32", crc},
+          {"name", model.name},
+          {"serial", optional_text(model.serial)},
+          {"links", joints_json(model)},
+          {"last_T_flange", pose_json(model.geometry.last_T_flange)},
+          {"tracker_T_base", model.has_base == 1 ? pose_json(model.tracker_T_base) : Json()},
+          {"targets", targets},
+          {"posture_family", family_name(model.family)},
+          {"tolerances",
+           {{"position_mm", model.tolerances.position_m * mm},
+            {"rotation_deg", model.tolerances.rotation_rad * deg},
+            {"float_position_mm", static_cast<double>(model.tolerances.float_position_m) * mm},
+            {"float_rotation_deg", static_cast<double>(model.tolerances.float_rotation_rad) * deg}}},
+          {"provenance", provenance_json(model.provenance)},
+          {"security_counter", model.security_counter},
+          {"signature",
+           is_signed ? Json{{"algorithm", "Ed25519"},
+                            {"key_id", hexadecimal(authentication.key_id, sizeof authentication.key_id)},
+                            {"signature", hexadecimal(authentication.signature, sizeof authentication.signature)}}
+                     : Json()},
+          {"self_test",
+           {{"arithmetic_id", model.arithmetic_id},
+            {"double_here", outcome<double>(model)},
+            {"float_here", outcome<float>(model)},
+            {"double", vectors_json(model.double_vector, model.double_vector_count, model.geometry.joint_count)},
+            {"float", vectors_json(model.float_vector, model.float_vector_count, model.geometry.joint_count)}}}};
+}
+
+}  // namespace mdhcal::offline
