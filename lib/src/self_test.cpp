@@ -59,14 +59,19 @@ Status run(const SelfTestVector<Real>& vector, const Arm<Real>& arm, const Share
   options.position_tolerance_m = share.position_tolerance_m;
   options.rotation_tolerance_rad = share.rotation_tolerance_rad;
   const Status status = tick(arm, options, vector.base_T_flange, q);
-  bool passed = static_cast<std::int32_t>(status) == vector.inverse_status;
+  bool passed = true;
   if (bits) {
-    passed = passed && std::memcmp(pose.quaternion, vector.base_T_flange.quaternion, sizeof pose.quaternion) == 0 &&
+    passed = static_cast<std::int32_t>(status) == vector.inverse_status &&
+             std::memcmp(pose.quaternion, vector.base_T_flange.quaternion, sizeof pose.quaternion) == 0 &&
              std::memcmp(pose.position_m, vector.base_T_flange.position_m, sizeof pose.position_m) == 0 &&
              std::memcmp(q, vector.inverse_q, sizeof q) == 0;
   } else {
-    passed = passed && near(pose, vector.base_T_flange, share.bound);
-    for (std::size_t i = 0; i < max_joints; ++i) passed = passed && within(q[i] - vector.inverse_q[i], share.bound);
+    passed = near(pose, vector.base_T_flange, share.bound);
+    // Where the host's inverse did not arrive, another arithmetic need not stop in the same place.
+    if (vector.inverse_status == static_cast<std::int32_t>(Status::ok)) {
+      passed = passed && status == Status::ok;
+      for (std::size_t i = 0; i < max_joints; ++i) passed = passed && within(q[i] - vector.inverse_q[i], share.bound);
+    }
   }
   return passed ? Status::ok : Status::self_test_failed;
 }

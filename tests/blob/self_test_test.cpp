@@ -83,6 +83,12 @@ TYPED_TEST(SelfTest, ComparesBitsUnderItsOwnArithmeticId) {
     own(blob.float_vector);
   }
   EXPECT_EQ(self_test(blob, this->arm), Status::ok);
+  // Another status fails it.
+  blob.double_vector[1].inverse_status = 4;
+  blob.float_vector[1].inverse_status = 4;
+  EXPECT_EQ(self_test(blob, this->arm), Status::self_test_failed);
+  blob.double_vector[1].inverse_status = 0;
+  blob.float_vector[1].inverse_status = 0;
   // One bit of one number fails it.
   auto* bits = reinterpret_cast<std::uint8_t*>(pose_of<TypeParam>(blob).position_m);
   bits[0] ^= 1U;
@@ -93,13 +99,21 @@ TYPED_TEST(SelfTest, ComparesBitsUnderItsOwnArithmeticId) {
   EXPECT_EQ(self_test(blob, this->arm), Status::self_test_failed);
 }
 
-TYPED_TEST(SelfTest, FailsOnAnotherStatusOrWithoutVectors) {
-  this->model->double_vector[0].inverse_status = 4;
-  this->model->float_vector[0].inverse_status = 4;
-  EXPECT_EQ(self_test(*this->model, this->arm), Status::self_test_failed);
+TYPED_TEST(SelfTest, FailsWithoutVectors) {
   this->model->double_vector_count = 0;
   this->model->float_vector_count = 0;
   EXPECT_EQ(self_test(*this->model, this->arm), Status::self_test_failed);
+}
+
+// Under a foreign arithmetic id an inverse that did not arrive binds nobody; its pose does.
+TYPED_TEST(SelfTest, LeavesOutForeignInversesThatDidNotArrive) {
+  Model& blob = *this->model;
+  blob.double_vector[1].inverse_status = 5;
+  blob.float_vector[1].inverse_status = 5;
+  inverse_of<TypeParam>(blob)[0] += TypeParam(0.5);
+  EXPECT_EQ(self_test(blob, this->arm), Status::self_test_tolerance);
+  pose_of<TypeParam>(blob).position_m[0] += TypeParam(0.5);
+  EXPECT_EQ(self_test(blob, this->arm), Status::self_test_failed);
 }
 
 }  // namespace
