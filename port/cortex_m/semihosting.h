@@ -24,6 +24,9 @@ __attribute__((noreturn)) static inline void semihosting_exit(uint32_t status) {
 
 /// Copies the command line into `to`, an empty string where there is none.
 static inline void semihosting_command_line(char* to, uint32_t size) {
-  const uintptr_t block[2] = {(uintptr_t)to, size};
-  if (semihosting_call(0x15, block) != 0U) to[0] = '\0';
+  const struct {
+    char* buffer;
+    uintptr_t size;
+  } block = {to, size};
+  if (semihosting_call(0x15, &block) != 0U) to[0] = '\0';
 }
