@@ -13,6 +13,7 @@ extern void __libc_init_array(void);
 void reset_handler(void);
 void fault_handler(void);
 void timer0_handler(void);
+void uart0_receive_handler(void);
 void unexpected_handler(void);
 
 // Asked for by newlib's constructors and destructors; there is nothing to do in them here.
@@ -61,10 +62,11 @@ void unexpected_handler(void) {
   semihosting_exit(fault_status);
 }
 
-// An image that uses timer 0 defines its own.
+// An image that uses UART 0 or timer 0 defines its own.
+__attribute__((weak)) void uart0_receive_handler(void) { unexpected_handler(); }
 __attribute__((weak)) void timer0_handler(void) { unexpected_handler(); }
 
-// The timer is interrupt 8 on the MPS2 boards; on the MPS3 board it is not used.
+// Interrupts 0 and 8 of the MPS2 boards; the images for the MPS3 board use none.
 __attribute__((section(".vectors"), used)) static void (*const vectors[])(void) = {
     (void (*)(void))(uintptr_t)stack_top,
     reset_handler,
@@ -82,8 +84,14 @@ __attribute__((section(".vectors"), used)) static void (*const vectors[])(void) 
     0,
     unexpected_handler,
     unexpected_handler,
-    unexpected_handler, unexpected_handler, unexpected_handler, unexpected_handler,
-    unexpected_handler, unexpected_handler, unexpected_handler, unexpected_handler,
+    uart0_receive_handler,
+    unexpected_handler,
+    unexpected_handler,
+    unexpected_handler,
+    unexpected_handler,
+    unexpected_handler,
+    unexpected_handler,
+    unexpected_handler,
     timer0_handler,
 };
 

@@ -14,6 +14,7 @@
 #include "mdhcal/self_test.hpp"
 #include "motion.hpp"
 #include "receiver.hpp"
+#include "ring.hpp"
 #include "trace.hpp"
 
 namespace {
@@ -23,6 +24,7 @@ using mdhcal::Status;
 
 Motion motion;
 Receiver receiver;
+Ring channel;
 Correction corrections[2];
 std::uint8_t blob[mdhcal::blob_size];
 std::uint32_t worst_tick = 0;
@@ -143,17 +145,25 @@ Options read_options(int count, char** arguments, EmulatedFlash& flash) {
 
 extern "C" void timer0_handler() {
   board::acknowledge_timer();
+  const std::uint32_t begin = board::until_interrupt();
   motion.tick();
-  const std::uint32_t spent = board::since_interrupt();
+  const std::uint32_t end_of_tick = board::until_interrupt();
+  constexpr std::uint32_t period = board::timer_hz / 1000U;
+  const std::uint32_t spent = begin >= end_of_tick ? begin - end_of_tick : begin + period - end_of_tick;
   if (spent > worst_tick) worst_tick = spent;
+}
+
+extern "C" void uart0_receive_handler() {
+  std::uint8_t byte = 0;
+  if (board::receive(byte)) channel.put(byte);
 }
 
 int main(int count, char** arguments) {
   static EmulatedFlash flash(board::flash_region);
   const Options options = read_options(count, arguments, flash);
+  board::start_uart();
   mdhcal::StoreState state{};
   boot(flash.flash, options, state);
-  board::start_uart();
   board::start_timer(board::timer_hz / 1000U);
 
   Swap last_swap = Swap::none;
@@ -163,7 +173,7 @@ int main(int count, char** arguments) {
     const std::uint32_t now_ms = motion.ticks();
     std::uint8_t byte = 0;
     Receiver::Event event = receiver.idle(now_ms);
-    while (event == Receiver::Event::none && board::receive(byte)) event = receiver.take(byte, now_ms);
+    while (event == Receiver::Event::none && channel.take(byte)) event = receiver.take(byte, now_ms);
     if (event == Receiver::Event::blob) take_update(flash.flash, options, state);
     if (event == Receiver::Event::bad_size) Line("update: refused, ") << mdhcal::text(Status::blob_size);
     if (event == Receiver::Event::abandoned) {

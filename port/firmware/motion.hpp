@@ -21,7 +21,7 @@ struct Correction {
 /// No joint moves further in one tick [rad] or [m].
 inline constexpr double max_step = 0.00314;
 /// A swap that would change a joint by more is refused [rad] or [m].
-inline constexpr double max_jump = 0.05;
+inline constexpr double max_jump = 0.02;
 /// From one model to another [ticks].
 inline constexpr std::uint32_t ramp_ticks = 400;
 inline constexpr std::int32_t joint_count = 6;
