@@ -1,0 +1,138 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
+"""The project as somebody's dependency: packaging_test.py BUILD [PRESET of a bare-metal target] [unittest...]"""
+import json
+import os
+import pathlib
+import re
+import subprocess
+import sys
+import tempfile
+import unittest
+
+HERE = pathlib.Path(__file__).resolve().parent
+ROOT = HERE.parents[2]
+PACKAGING = ROOT / "cmake/packaging"
+BOARD = ROOT / "port/cortex_m"
+
+
+class Packaging(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.folder = tempfile.TemporaryDirectory()
+        cls.here = pathlib.Path(cls.folder.name)
+        cls.prefix = cls.here / "moved" / "prefix"
+        # Installed at one place and moved to another: nothing in it may name the first.
+        first = cls.here / "first"
+        cls.run_(["cmake", "--install", BUILD, "--prefix", first, "--component", "library"])
+        cls.prefix.parent.mkdir()
+        first.rename(cls.prefix)
+        cls.toolchain, cls.board, cls.flags, cls.emulator, cls.prefix_ = [], [], [], [], ""
+        if PRESET:
+            toolchain = ROOT / f"cmake/toolchains/{PRESET}.cmake"
+            text = toolchain.read_text()
+            machine = re.search(r"MDHCAL_MACHINE (\S+)\)", text).group(1)
+            cls.toolchain = [f"-DCMAKE_TOOLCHAIN_FILE={toolchain}"]
+            cls.board = [f"-DCONSUMER_BOARD={BOARD}"]
+            cls.flags = re.search(r'MDHCAL_CPU_FLAGS "(.*)"', text).group(1).split()
+            cls.link = ["--specs=rdimon.specs", "-nostartfiles", "-Wl,--gc-sections", f"-L{BOARD}", f"-T{BOARD}/{machine}.ld"]
+            cls.emulator, cls.prefix_ = [BOARD / "run.sh", machine], "arm-none-eabi-"
+        else:
+            cls.link = []
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.folder.cleanup()
+
+    @staticmethod
+    def run_(command, **options):
+        done = subprocess.run([str(part) for part in command], capture_output=True, text=True, **options)
+        if done.returncode != 0:
+            raise AssertionError(f"{' '.join(str(part) for part in command)}\n{done.stdout}{done.stderr}")
+        return done.stdout
+
+    def execute(self, program):
+        self.run_([*self.emulator, program], timeout=60)
+
+    def build(self, name, source, *options):
+        build = self.here / name
+        self.run_(["cmake", "-S", source, "-B", build, "-G", "Ninja", *self.toolchain, *options])
+        self.run_(["cmake", "--build", build, "-j2"])
+        return build / "consumer"
+
+    def consumer(self, name, language, *options):
+        return self.build(name, HERE / "consumer", f"-DCONSUMER_LANGUAGE={language}", *self.board, *options)
+
+    def startup(self):
+        """Objects of the board's start-up code, for links without CMake."""
+        if not PRESET:
+            return []
+        item = self.here / "startup.o"
+        self.run_([self.prefix_ + "gcc", *self.flags, "-O2", "-fno-tree-loop-distribute-patterns", "-c",
+                   BOARD / "startup.c", "-o", item])
+        return [item]
+
+    def test_find_package_in_cxx(self):
+        self.execute(self.consumer("package_cxx", "CXX", f"-DCMAKE_PREFIX_PATH={self.prefix}",
+                                   f"-Dmdhcal_DIR={self.config()}"))
+
+    def test_find_package_in_c(self):
+        self.execute(self.consumer("package_c", "C", f"-Dmdhcal_DIR={self.config()}"))
+
+    def config(self):
+        return next(self.prefix.rglob("mdhcalConfig.cmake")).parent
+
+    def test_add_subdirectory(self):
+        self.execute(self.consumer("subdirectory_cxx", "CXX", f"-DCONSUMER_SOURCE_TREE={ROOT}"))
+
+    def test_nothing_installed_names_a_place(self):
+        for path in [*self.prefix.rglob("*.cmake"), *self.prefix.rglob("*.pc")]:
+            self.assertNotIn(str(self.here), path.read_text(), path)
+            self.assertNotIn(str(ROOT), path.read_text(), path)
+
+    def test_pkg_config(self):
+        pc = next(self.prefix.rglob("mdhcal.pc"))
+        environment = {**os.environ, "PKG_CONFIG_LIBDIR": str(pc.parent), "PKG_CONFIG_ALLOW_SYSTEM_CFLAGS": "1"}
+        options = self.run_(["pkg-config", "--cflags", "--libs", "mdhcal"], env=environment).split()
+        program = self.here / "by_pkg_config"
+        self.run_([self.prefix_ + "g++", "-std=c++17", *self.flags, HERE / "consumer/consumer.cpp", *self.startup(),
+                   *options, *self.link, "-o", program])
+        self.execute(program)
+
+    def test_platformio_library_holds_the_same_functions(self):
+        self.run_([sys.executable, HERE / "check_sources.py"])
+        library = PACKAGING / "platformio"
+        flags = json.loads((library / "library.json").read_text())["build"]["flags"]
+        objects = []
+        for source in sorted((library / "src").glob("*.cpp")):
+            objects.append(self.here / f"{source.stem}.o")
+            self.run_([self.prefix_ + "g++", *self.flags, *flags, "-c", source, "-o", objects[-1]], cwd=library)
+        names = lambda files: {line.split()[2] for line in self.run_(
+            [self.prefix_ + "nm", "-g", "--defined-only", *files]).splitlines() if len(line.split()) == 3}
+        archives = [BUILD / "lib/libmdhcal_rt.a"]
+        self.assertEqual(names(archives), names([item for item in objects if item.name.startswith("rt_")]))
+        program = self.here / "by_platformio"
+        self.run_([self.prefix_ + "g++", "-std=c++17", *self.flags, f"-I{ROOT / 'lib/include'}", f"-I{ROOT / 'port/include'}",
+                   HERE / "consumer/consumer.cpp", *objects, *self.startup(), *self.link, "-o", program])
+        self.execute(program)
+
+    def test_zephyr_module(self):
+        module = PACKAGING / "zephyr"
+        text = (module / "zephyr/module.yml").read_text()
+        self.assertIn("cmake: .", text)
+        self.assertTrue((module / re.search(r"kconfig: (\S+)", text).group(1)).exists())
+        self.execute(self.build("zephyr", HERE / "zephyr_like", f"-DMODULE={module}",
+                                f"-DCONSUMER={HERE / 'consumer/consumer.cpp'}", "-DCMAKE_EXPORT_COMPILE_COMMANDS=ON"))
+        commands = json.loads((self.here / "zephyr/compile_commands.json").read_text())
+        ours = [entry["command"] for entry in commands if "/lib/src/" in entry["file"]]
+        self.assertTrue(ours and all("FROM_ZEPHYR" in command for command in ours))
+
+    def test_esp_idf_component(self):
+        self.execute(self.build("esp_idf", HERE / "esp_idf_like", f"-DMODULE={PACKAGING / 'esp-idf/mdhcal'}",
+                                f"-DCONSUMER={HERE / 'consumer/consumer.cpp'}"))
+
+
+if __name__ == "__main__":
+    BUILD = pathlib.Path(sys.argv[1])
+    PRESET = sys.argv[2] if len(sys.argv) > 2 and not sys.argv[2].startswith(("-", "Packaging")) else ""
+    unittest.main(argv=[sys.argv[0], *sys.argv[2 + bool(PRESET):]], verbosity=2)
