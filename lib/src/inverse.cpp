@@ -4,6 +4,7 @@
 #include "real.hpp"
 // The tick's parts see Real.
 #include "constrained_tick.hpp"
+#include "refine.hpp"
 #include "regular_tick.hpp"
 
 namespace mdhcal {
@@ -71,7 +72,36 @@ std::uint32_t outside_limits(const Arm<Real>& arm, const Real* q) {
   return mask;
 }
 
+// An arm without lengths turns only; any unit will do.
+Real length_unit(const Arm<Real>& arm) { return arm.reach_m > Real(1e-6) ? arm.reach_m : Real{1}; }
+
 }  // namespace
+
+bool tick_valid(const Arm<Real>& arm, const TickOptions<Real>& options, const Pose<Real>& target) noexcept {
+  return valid(options, arm.joint_count) && valid(target);
+}
+
+bool refine(const Arm<Real>& arm, const TickOptions<Real>& options, const Frame<Real>& target, Real* q) noexcept {
+  TickOptions<Real> free = options;
+  free.posture_gain = 0;
+  free.max_iterations = max_tick_iterations;
+  TickState state;
+  state.arm = &arm;
+  state.options = &free;
+  state.target = target;
+  state.length_m = length_unit(arm);
+  for (std::int32_t j = 0; j < arm.joint_count; ++j) {
+    state.q[j] = q[j];
+    state.low[j] = -largest;
+    state.high[j] = largest;
+  }
+  state.evaluations = 0;
+  bool is_met = arm.joint_count == 6 && options.task == Task::pose && regular_tick(state);
+  // A starting value may be far: most of the error has to go before steps stop halving.
+  if (!is_met) is_met = attempt(state, Real{1}, Real{0}, fold_curvature, Real(0.05), 24, max_tick_iterations, false).met;
+  for (std::int32_t j = 0; j < arm.joint_count; ++j) q[j] = state.q[j];
+  return is_met;
+}
 
 TickOptions<Real> default_tick_options(const Arm<Real>& arm) noexcept {
   TickOptions<Real> options{};
@@ -87,13 +117,12 @@ TickOptions<Real> default_tick_options(const Arm<Real>& arm) noexcept {
 
 Status tick(const Arm<Real>& arm, const TickOptions<Real>& options, const Pose<Real>& base_T_flange, Real* q,
             TickReport<Real>* report) noexcept {
-  if (!valid(options, arm.joint_count) || !valid(base_T_flange) || !readings_valid(arm, q)) return Status::bad_input;
+  if (!tick_valid(arm, options, base_T_flange) || !readings_valid(arm, q)) return Status::bad_input;
   TickState state;
   state.arm = &arm;
   state.options = &options;
   to_frame(base_T_flange, state.target);
-  // An arm without lengths turns only; any unit will do.
-  state.length_m = arm.reach_m > Real(1e-6) ? arm.reach_m : Real{1};
+  state.length_m = length_unit(arm);
   for (std::int32_t j = 0; j < arm.joint_count; ++j) {
     state.q[j] = q[j];
     set_bounds(state, j, q[j]);

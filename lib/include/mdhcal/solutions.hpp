@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "mdhcal/inverse.hpp"
+
+namespace mdhcal {
+
+/// The most solutions that one call returns.
+inline constexpr std::int32_t max_solutions = 16;
+/// The most restarts that one call may use.
+inline constexpr std::int32_t max_restarts = 400;
+
+/// Where starting values come from.
+enum class Family : std::int32_t {
+  general = 0,         ///< restarts from fixed pseudo-random joints
+  parallel = 1,        ///< six turning joints, axes 2, 3, 4 parallel, axes 5 and 6 meeting
+  spherical_wrist = 2, ///< six turning joints, axes 2 and 3 parallel, axes 4, 5, 6 meeting in a point
+};
+
+/// How to look for solutions. Take default_solution_options() and change what matters.
+template <class Real>
+struct SolutionOptions {
+  TickOptions<Real> tick;  ///< tolerances and task; step limits and posture are not used
+  std::int32_t restarts;   ///< 0 ... max_restarts: how many, beyond the closed form's values
+};
+
+/// What was found, nearest to the posture first.
+template <class Real>
+struct Solutions {
+  std::int32_t count;                     ///< 0 ... max_solutions
+  Family family;
+  Real q[max_solutions][max_joints];      ///< readings [rad] or [m], each turn the allowed one nearest to the posture
+  Real distance[max_solutions];           ///< largest joint difference from the posture [rad, or lengths of the arm]
+};
+
+/// 0 restarts for an arm with a closed form, else 100.
+SolutionOptions<double> default_solution_options(const Arm<double>& arm) noexcept;
+SolutionOptions<float> default_solution_options(const Arm<float>& arm) noexcept;
+
+/// The family whose closed form gives starting values: axes count as parallel within 5 degrees and as meeting within
+/// 0.05 of the reach, since the starting values are refined on the arm as it is.
+Family family(const Arm<double>& arm) noexcept;
+Family family(const Arm<float>& arm) noexcept;
+
+/// Every solution of the pose within the joint limits, counted modulo full turns: the closed form of the family (Paden
+/// 1985; Kahan; Elias, Wen 2022) treats the arm as if its axes were exactly parallel and met exactly, further values are
+/// set on both sides of every nearly singular joint, each is refined on the arm as it is, and duplicates are merged. An
+/// arm with more joints than the task needs has a solution a starting value.
+/// Returns ok (count > 0), out_of_reach (none was found; count 0), or bad_input (as tick(); also a posture that is not
+/// finite or beyond max_reading; `solutions` untouched). Bounded: at most 80 + restarts refinements.
+Status find_solutions(const Arm<double>& arm, const SolutionOptions<double>& options,
+                      const Pose<double>& base_T_flange, const double* posture, Solutions<double>& solutions) noexcept;
+Status find_solutions(const Arm<float>& arm, const SolutionOptions<float>& options, const Pose<float>& base_T_flange,
+                      const float* posture, Solutions<float>& solutions) noexcept;
+
+/// Cold start: the solution nearest to the readings q[joint_count], in place. The restarts are used only if the closed
+/// form finds none. Returns as find_solutions(); q is untouched unless ok.
+Status cold_start(const Arm<double>& arm, const SolutionOptions<double>& options, const Pose<double>& base_T_flange,
+                  double* q) noexcept;
+Status cold_start(const Arm<float>& arm, const SolutionOptions<float>& options, const Pose<float>& base_T_flange,
+                  float* q) noexcept;
+
+}  // namespace mdhcal

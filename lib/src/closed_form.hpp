@@ -1,0 +1,206 @@
+// SPDX-License-Identifier: MIT
+// Private to lib/src; include after real.hpp. Closed-form inverse kinematics of the nominal families, as starting values.
+#pragma once
+
+#include "chain.hpp"
+#include "mdhcal/solutions.hpp"
+#include "real.hpp"
+#include "rotation.hpp"
+#include "trigonometry.hpp"
+
+namespace mdhcal {
+namespace {
+
+struct Vector {
+  Real x, y, z;
+};
+
+inline Vector operator+(const Vector& a, const Vector& b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
+inline Vector operator-(const Vector& a, const Vector& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
+inline Vector operator*(Real s, const Vector& a) { return {s * a.x, s * a.y, s * a.z}; }
+inline Real inner(const Vector& a, const Vector& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+inline Vector cross(const Vector& a, const Vector& b) {
+  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+inline Real length(const Vector& a) { return square_root(inner(a, a)); }
+
+/// The arm as screws: base_T_flange(c) = turn(axis 1, c_1) ... turn(axis 6, c_6) zero_T_flange, c the joint coordinates.
+struct Screws {
+  Vector axis[6];
+  Vector point[6];
+  Vector meet;     ///< where the last two or three axes meet, nearly
+  Frame<Real> zero;
+  Family family;
+};
+
+inline Vector turned(const Vector& axis, Real angle, const Vector& p) {
+  Real sine = 0;
+  Real cosine = 1;
+  sin_cos(angle, sine, cosine);
+  return (cosine * p + sine * cross(axis, p)) + ((Real{1} - cosine) * inner(axis, p)) * axis;
+}
+
+/// The angle that turns p to q about the axis, as far as it can (Paden, Kahan: first subproblem).
+inline Real angle_between(const Vector& axis, const Vector& p, const Vector& q) {
+  return arc_tangent(inner(axis, cross(p, q)), inner(p, q) - inner(axis, p) * inner(axis, q));
+}
+
+/// The two angles with h . turned(axis, angle, p) = d; the nearest ones if there are none. `spread` is the least half
+/// difference of the two, so that a nearly double root gives values on both sides. Returns the half difference.
+inline Real angles_to_plane(const Vector& h, const Vector& axis, const Vector& p, Real d, Real spread, Real* angle) {
+  const Vector side = cross(axis, p);
+  const Real a = inner(h, side);
+  const Real b = -inner(h, cross(axis, side));
+  const Real c = d - inner(h, axis) * inner(axis, p);
+  const Real size = square_root(a * a + b * b);
+  const Real middle = size > Real{0} ? arc_tangent(a, b) : Real{0};
+  const Real half = size > Real{0} ? arc_cosine(c / size) : Real{0};
+  constexpr Real straight = Real(3.14159265358979323846);
+  Real apart = half < spread ? spread : half;
+  if (apart > straight - spread) apart = straight - spread;
+  angle[0] = middle + apart;
+  angle[1] = middle - apart;
+  return half < straight - half ? half : straight - half;
+}
+
+inline Vector row_of(const Real* r, const Vector& v) {
+  return {r[0] * v.x + r[1] * v.y + r[2] * v.z, r[3] * v.x + r[4] * v.y + r[5] * v.z, r[6] * v.x + r[7] * v.y + r[8] * v.z};
+}
+
+/// The point between two lines where they are nearest to each other.
+inline Vector meeting(const Vector& p, const Vector& u, const Vector& q, const Vector& v) {
+  const Real c = inner(u, v);
+  const Real determinant = Real{1} - c * c;
+  if (!(determinant > Real(1e-3))) return p;
+  const Vector w = q - p;
+  const Real s = (inner(w, u) - c * inner(w, v)) / determinant;
+  const Real t = (c * inner(w, u) - inner(w, v)) / determinant;
+  return Real(0.5) * ((p + s * u) + (q + t * v));
+}
+
+inline Real line_distance(const Vector& point, const Vector& p, const Vector& u) { return length(cross(point - p, u)); }
+
+/// Reads the screws off the arm at zero readings.
+inline void read_screws(const Arm<Real>& arm, Screws& screws) {
+  screws.family = Family::general;
+  if (arm.joint_count != 6 || arm.prismatic_mask != 0U) return;
+  const Real zero[max_joints] = {};
+  Jacobian<Real> jacobian;
+  evaluate(arm, zero, screws.zero, jacobian);
+  const Real* p = screws.zero.position_m;
+  for (int i = 0; i < 6; ++i) {
+    const Real* column = jacobian.column[i];
+    const Vector z{column[3], column[4], column[5]};
+    const Vector moment{column[0], column[1], column[2]};
+    screws.axis[i] = z;
+    screws.point[i] = Vector{p[0], p[1], p[2]} - cross(moment, z);
+  }
+  constexpr Real parallel = Real(0.0872);  // 5 degrees
+  const Real near = Real(0.05) * arm.reach_m;
+  const Vector* k = screws.axis;
+  const Vector* o = screws.point;
+  if (length(cross(k[1], k[2])) > parallel || length(cross(k[0], k[1])) < Real(0.5)) return;
+  const Vector last = meeting(o[4], k[4], o[5], k[5]);
+  const bool meets = length(cross(k[4], k[5])) > Real(0.5) && line_distance(last, o[5], k[5]) < near;
+  if (!meets) return;
+  screws.meet = last;
+  if (length(cross(k[2], k[3])) < parallel && length(cross(k[3], k[4])) > Real(0.5)) {
+    screws.family = Family::parallel;
+  } else if (line_distance(last, o[3], k[3]) < near && length(cross(k[3], k[4])) > Real(0.5)) {
+    screws.family = Family::spherical_wrist;
+  }
+}
+
+/// Starting values for the joint coordinates.
+struct StartingValues {
+  std::int32_t count;      ///< 0 ... 8
+  Real coordinates[8][6];
+  Real smallest;           ///< smallest half difference of two roots met on the way: small near a singularity [rad]
+  Real wrist_smallest;     ///< that of the fifth joint
+};
+
+/// `turn` is added to joint 6 and taken back by the joints before it, as far as a straight wrist allows: there the pose
+/// alone does not say where joint 6 is.
+inline void closed_form(const Screws& s, const Frame<Real>& target, Real spread, Real turn, StartingValues& values) {
+  const Vector* k = s.axis;
+  const Vector* o = s.point;
+  // g = target zero^-1: the motion of all six turns.
+  Real g[9];
+  for (int row = 0; row < 3; ++row) {
+    for (int col = 0; col < 3; ++col) g[3 * row + col] = dot(target.rotation + 3 * row, s.zero.rotation + 3 * col);
+  }
+  const Vector flange{s.zero.position_m[0], s.zero.position_m[1], s.zero.position_m[2]};
+  const Vector moved = Vector{target.position_m[0], target.position_m[1], target.position_m[2]} +
+                       row_of(g, s.meet - flange);
+  const Real gt[9] = {g[0], g[3], g[6], g[1], g[4], g[7], g[2], g[5], g[8]};
+  const bool three = s.family == Family::parallel;
+  const Vector h = k[1];
+  values.smallest = Real{4};
+  values.wrist_smallest = Real{4};
+  values.count = 0;
+  Real first[2];
+  // Turns about axes along h leave the height along h as it is, so joint 1 alone sets it.
+  Real half = angles_to_plane(h, Real{-1} * k[0], moved - o[0], inner(h, s.meet - o[0]), spread, first);
+  if (half < values.smallest) values.smallest = half;
+  for (const Real c1 : first) {
+    const Vector lowered = o[0] + turned(k[0], -c1, moved - o[0]);
+    if (three) {
+      const Vector h_flange = row_of(gt, turned(k[0], c1, h));
+      Real fifth[2];
+      half = angles_to_plane(h, k[4], k[5], inner(h_flange, k[5]), spread, fifth);
+      if (half < values.wrist_smallest) values.wrist_smallest = half;
+      for (const Real c5 : fifth) {
+        const Real c6 = turn - angle_between(k[5], turned(k[4], -c5, h), h_flange);
+        // The sum of turns 2, 3, 4 from what it does to axis 5, which is across h.
+        const Vector carried = turned(k[0], -c1, row_of(g, turned(k[5], -c6, k[4])));
+        const Real sum = angle_between(h, k[4], carried);
+        const Vector elbow = lowered - turned(h, sum, s.meet - o[3]);
+        const Vector p = o[3] - o[2];
+        const Vector q = o[1] - o[2];
+        const Vector across = elbow - o[1];
+        Real third[2];
+        half = angles_to_plane(q, k[2], p, Real(0.5) * (inner(p, p) + inner(q, q) - inner(across, across)), spread, third);
+        if (half < values.smallest) values.smallest = half;
+        for (const Real c3 : third) {
+          const Real c2 = angle_between(k[1], turned(k[2], c3, p) - q, across);
+          Real* c = values.coordinates[values.count++];
+          c[0] = c1;
+          c[1] = c2;
+          c[2] = c3;
+          c[3] = sum - c2 - c3;
+          c[4] = c5;
+          c[5] = c6;
+        }
+      }
+    } else {
+      const Vector p = s.meet - o[2];
+      const Vector q = o[1] - o[2];
+      const Vector across = lowered - o[1];
+      Real third[2];
+      half = angles_to_plane(q, k[2], p, Real(0.5) * (inner(p, p) + inner(q, q) - inner(across, across)), spread, third);
+      if (half < values.smallest) values.smallest = half;
+      for (const Real c3 : third) {
+        const Real c2 = angle_between(k[1], turned(k[2], c3, p) - q, across);
+        const Vector sixth = turned(k[2], -c3, turned(k[1], -c2, turned(k[0], -c1, row_of(g, k[5]))));
+        const Vector fourth = row_of(gt, turned(k[0], c1, turned(k[1], c2, turned(k[2], c3, k[3]))));
+        Real fifth[2];
+        half = angles_to_plane(k[3], k[4], k[5], inner(k[3], sixth), spread, fifth);
+        if (half < values.wrist_smallest) values.wrist_smallest = half;
+        for (const Real c5 : fifth) {
+          Real* c = values.coordinates[values.count++];
+          c[0] = c1;
+          c[1] = c2;
+          c[2] = c3;
+          const Vector bent = turned(k[4], c5, k[5]);
+          const Real back = inner(k[3], bent) < Real{0} ? turn : -turn;
+          c[3] = back + angle_between(k[3], bent, sixth);
+          c[4] = c5;
+          c[5] = turn - angle_between(k[5], turned(k[4], -c5, k[3]), fourth);
+        }
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace mdhcal

@@ -1,0 +1,263 @@
+// SPDX-License-Identifier: MIT
+#include "mdhcal/solutions.hpp"
+
+#include "chain.hpp"
+#include "closed_form.hpp"
+#include "pose_error.hpp"
+#include "real.hpp"
+#include "refine.hpp"
+
+namespace mdhcal {
+
+namespace {
+
+constexpr Real full_turn = Real(6.28318530717958647692);
+/// Solutions nearer than this, modulo full turns, are one.
+constexpr Real same_solution = sizeof(Real) == sizeof(double) ? Real(1e-3) : Real(5e-3);
+
+struct Search {
+  const Arm<Real>* arm;
+  const SolutionOptions<Real>* options;
+  const Real* posture;
+  Frame<Real> target;
+  std::uint32_t periodic_mask;  ///< joints for which a full turn of the reading changes nothing
+};
+
+bool bit(std::uint32_t mask, std::int32_t j) { return ((mask >> static_cast<std::uint32_t>(j)) & 1U) != 0U; }
+
+Real whole(Real x) {
+  return static_cast<Real>(static_cast<std::int32_t>(x < Real{0} ? x - Real(0.5) : x + Real(0.5)));
+}
+
+std::uint32_t periodic_joints(const Arm<Real>& arm) {
+  std::uint32_t mask = 0;
+  for (std::int32_t j = 0; j < arm.joint_count; ++j) {
+    bool periodic = !bit(arm.prismatic_mask, j);
+    for (std::int32_t i = 0; i < arm.joint_count; ++i) {
+      const Real ratio = arm.map[i][j];
+      const bool moves_slide = bit(arm.prismatic_mask, i) && magnitude(ratio) > Real{0};
+      if (moves_slide || magnitude(ratio - whole(ratio)) > Real{0}) periodic = false;
+    }
+    if (periodic) mask |= 1U << static_cast<std::uint32_t>(j);
+  }
+  return mask;
+}
+
+// Moves each periodic joint by full turns to the allowed one nearest to the posture. Returns whether all limits hold.
+bool choose_turns(const Search& search, Real* q) {
+  const Arm<Real>& arm = *search.arm;
+  for (std::int32_t j = 0; j < arm.joint_count; ++j) {
+    const bool has_min = bit(arm.min_mask, j);
+    const bool has_max = bit(arm.max_mask, j);
+    if (bit(search.periodic_mask, j)) {
+      q[j] -= full_turn * whole((q[j] - search.posture[j]) / full_turn);
+      if (has_min && q[j] < arm.min[j]) q[j] += full_turn * whole((arm.min[j] - q[j]) / full_turn + Real(0.499999));
+      if (has_max && q[j] > arm.max[j]) q[j] -= full_turn * whole((q[j] - arm.max[j]) / full_turn + Real(0.499999));
+    }
+    if (has_min && q[j] < arm.min[j]) return false;
+    if (has_max && q[j] > arm.max[j]) return false;
+  }
+  return true;
+}
+
+Real joint_distance(const Search& search, const Real* a, const Real* b, bool modulo) {
+  Real largest = 0;
+  for (std::int32_t j = 0; j < search.arm->joint_count; ++j) {
+    Real difference = a[j] - b[j];
+    if (modulo && bit(search.periodic_mask, j)) difference -= full_turn * whole(difference / full_turn);
+    if (bit(search.arm->prismatic_mask, j) && search.arm->reach_m > Real(1e-6)) difference /= search.arm->reach_m;
+    if (magnitude(difference) > largest) largest = magnitude(difference);
+  }
+  return largest;
+}
+
+bool meets(const Search& search, const Real* q) {
+  Frame<Real> frame;
+  PoseError error;
+  evaluate(*search.arm, q, frame);
+  pose_error(search.target, frame, search.options->tick.task, error);
+  return error.position_m <= search.options->tick.position_tolerance_m &&
+         error.rotation_rad <= search.options->tick.rotation_tolerance_rad;
+}
+
+// Refines a starting value and adds what it leads to, if that is new; a full list keeps the nearest. The list is
+// sorted at all times.
+void consider(const Search& search, Real* q, Solutions<Real>& found) {
+  const std::int32_t joints = search.arm->joint_count;
+  if (!refine(*search.arm, search.options->tick, search.target, q)) return;
+  if (!choose_turns(search, q)) return;
+  // Full turns are added in rounded numbers.
+  if (!meets(search, q)) return;
+  for (std::int32_t k = 0; k < found.count; ++k) {
+    if (joint_distance(search, q, found.q[k], true) < same_solution) return;
+  }
+  const Real distance = joint_distance(search, q, search.posture, false);
+  if (found.count == max_solutions) {
+    if (!(distance < found.distance[max_solutions - 1])) return;
+    --found.count;
+  }
+  std::int32_t place = found.count++;
+  for (; place > 0 && distance < found.distance[place - 1]; --place) {
+    for (std::int32_t j = 0; j < joints; ++j) found.q[place][j] = found.q[place - 1][j];
+    found.distance[place] = found.distance[place - 1];
+  }
+  for (std::int32_t j = 0; j < joints; ++j) found.q[place][j] = q[j];
+  found.distance[place] = distance;
+}
+
+// Readings from joint coordinates: the couplings' linear system by Gaussian elimination with row exchanges. Returns
+// false if the couplings have no unique answer.
+bool readings_of(const Arm<Real>& arm, const Real* coordinates, Real* q) {
+  const std::int32_t joints = arm.joint_count;
+  Real a[max_joints][max_joints + 1];
+  for (std::int32_t i = 0; i < joints; ++i) {
+    for (std::int32_t j = 0; j < joints; ++j) a[i][j] = arm.map[i][j];
+    a[i][joints] = coordinates[i];
+  }
+  for (std::int32_t k = 0; k < joints; ++k) {
+    std::int32_t pivot = k;
+    for (std::int32_t i = k + 1; i < joints; ++i) {
+      if (magnitude(a[i][k]) > magnitude(a[pivot][k])) pivot = i;
+    }
+    if (!(magnitude(a[pivot][k]) > Real(1e-6))) return false;
+    for (std::int32_t j = k; j <= joints; ++j) {
+      const Real swap = a[k][j];
+      a[k][j] = a[pivot][j];
+      a[pivot][j] = swap;
+    }
+    for (std::int32_t i = k + 1; i < joints; ++i) {
+      const Real factor = a[i][k] / a[k][k];
+      for (std::int32_t j = k; j <= joints; ++j) a[i][j] -= factor * a[k][j];
+    }
+  }
+  for (std::int32_t i = joints - 1; i >= 0; --i) {
+    Real sum = a[i][joints];
+    for (std::int32_t j = i + 1; j < joints; ++j) sum -= a[i][j] * q[j];
+    q[i] = sum / a[i][i];
+    if (!(magnitude(q[i]) <= static_cast<Real>(max_reading))) return false;
+  }
+  return true;
+}
+
+// Roots that coincide within this are also tried apart [rad].
+constexpr Real nearly_double = Real(0.35);
+// With a nearly straight wrist joint 6 may be anywhere as long as the joints before it make up for it: where the pose
+// is met depends on the arm's errors, so it is tried all around.
+constexpr int wrist_turns = 8;
+
+void consider_coordinates(const Search& search, const Real* coordinates, Solutions<Real>& found) {
+  Real q[max_joints] = {};
+  if (readings_of(*search.arm, coordinates, q)) consider(search, q, found);
+}
+
+void try_closed_form(const Search& search, const Screws& screws, Solutions<Real>& found) {
+  constexpr Real spreads[3] = {Real{0}, Real(0.1), Real(0.3)};
+  StartingValues values;
+  for (const Real spread : spreads) {
+    closed_form(screws, search.target, spread, Real{0}, values);
+    for (std::int32_t k = 0; k < values.count; ++k) consider_coordinates(search, values.coordinates[k], found);
+    if (values.smallest > nearly_double && values.wrist_smallest > nearly_double) return;
+  }
+  if (values.wrist_smallest > nearly_double) return;
+  for (int turn = 1; turn < wrist_turns; ++turn) {
+    const Real angle = full_turn / static_cast<Real>(wrist_turns) * static_cast<Real>(turn);
+    closed_form(screws, search.target, Real(0.05), angle, values);
+    for (std::int32_t k = 0; k < values.count; ++k) consider_coordinates(search, values.coordinates[k], found);
+  }
+}
+
+// Fixed pseudo-random joints (Marsaglia 2003, xorshift), within the limits or half a turn or the reach about the posture.
+void restart_joints(const Search& search, std::uint32_t& state, Real* q) {
+  const Arm<Real>& arm = *search.arm;
+  for (std::int32_t j = 0; j < arm.joint_count; ++j) {
+    state ^= state << 13U;
+    state ^= state >> 17U;
+    state ^= state << 5U;
+    const Real unit = static_cast<Real>(state >> 8U) * Real(1.0F / 16777216.0F);
+    const Real width = bit(arm.prismatic_mask, j) ? arm.reach_m : Real(0.5) * full_turn;
+    Real low = search.posture[j] - width;
+    Real high = search.posture[j] + width;
+    if (bit(arm.min_mask, j) && low < arm.min[j]) low = arm.min[j];
+    if (bit(arm.max_mask, j) && high > arm.max[j]) high = arm.max[j];
+    q[j] = low + unit * (high - low);
+    if (!(magnitude(q[j]) <= static_cast<Real>(max_reading))) q[j] = search.posture[j];
+  }
+}
+
+void try_restarts(const Search& search, std::int32_t restarts, bool first_only, Solutions<Real>& found) {
+  std::uint32_t state = 0x9E3779B9U;
+  for (std::int32_t n = 0; n < restarts && !(first_only && found.count > 0); ++n) {
+    Real q[max_joints];
+    restart_joints(search, state, q);
+    consider(search, q, found);
+  }
+}
+
+bool prepare(const Arm<Real>& arm, const SolutionOptions<Real>& options, const Pose<Real>& target, const Real* posture,
+             Search& search) {
+  if (!tick_valid(arm, options.tick, target) || !readings_valid(arm, posture)) return false;
+  if (options.restarts < 0 || options.restarts > max_restarts) return false;
+  search.arm = &arm;
+  search.options = &options;
+  search.posture = posture;
+  search.periodic_mask = periodic_joints(arm);
+  to_frame(target, search.target);
+  return true;
+}
+
+}  // namespace
+
+Family family(const Arm<Real>& arm) noexcept {
+  Screws screws;
+  read_screws(arm, screws);
+  return screws.family;
+}
+
+SolutionOptions<Real> default_solution_options(const Arm<Real>& arm) noexcept {
+  SolutionOptions<Real> options{};
+  options.tick = default_tick_options(arm);
+  options.restarts = family(arm) == Family::general ? 100 : 0;
+  return options;
+}
+
+Status find_solutions(const Arm<Real>& arm, const SolutionOptions<Real>& options, const Pose<Real>& base_T_flange,
+                      const Real* posture, Solutions<Real>& solutions) noexcept {
+  Search search;
+  if (!prepare(arm, options, base_T_flange, posture, search)) return Status::bad_input;
+  Screws screws;
+  read_screws(arm, screws);
+  solutions.count = 0;
+  solutions.family = screws.family;
+  if (screws.family != Family::general && options.tick.task == Task::pose) {
+    try_closed_form(search, screws, solutions);
+  } else {
+    Real q[max_joints];
+    for (std::int32_t j = 0; j < arm.joint_count; ++j) q[j] = posture[j];
+    consider(search, q, solutions);
+  }
+  try_restarts(search, options.restarts, false, solutions);
+  return solutions.count > 0 ? Status::ok : Status::out_of_reach;
+}
+
+Status cold_start(const Arm<Real>& arm, const SolutionOptions<Real>& options, const Pose<Real>& base_T_flange,
+                  Real* q) noexcept {
+  Search search;
+  if (!prepare(arm, options, base_T_flange, q, search)) return Status::bad_input;
+  Screws screws;
+  read_screws(arm, screws);
+  Solutions<Real> found;
+  found.count = 0;
+  if (screws.family != Family::general && options.tick.task == Task::pose) {
+    try_closed_form(search, screws, found);
+  } else {
+    Real start[max_joints];
+    for (std::int32_t j = 0; j < arm.joint_count; ++j) start[j] = q[j];
+    consider(search, start, found);
+  }
+  try_restarts(search, options.restarts > 0 ? options.restarts : 100, true, found);
+  if (found.count == 0) return Status::out_of_reach;
+  for (std::int32_t j = 0; j < arm.joint_count; ++j) q[j] = found.q[0][j];
+  return Status::ok;
+}
+
+}  // namespace mdhcal

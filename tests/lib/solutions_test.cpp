@@ -1,0 +1,263 @@
+// SPDX-License-Identifier: MIT
+#include "mdhcal/solutions.hpp"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "tests/lib/poses.hpp"
+
+namespace {
+
+using namespace mdhcal;
+using namespace mdhcal::test;
+
+struct Sample {
+  Arm<double> arm{};
+  double q[max_joints]{};
+  double posture[max_joints]{};
+  Pose<double> target{};
+};
+
+Sample sample(const Geometry& nominal, Random& random, double errors_mm, bool near_singular = false) {
+  Sample s;
+  EXPECT_EQ(make_arm(with_errors(nominal, random, errors_mm * 1e-3, errors_mm * 0.1 * deg), s.arm), Status::ok);
+  for (;;) {
+    for (int i = 0; i < nominal.joint_count; ++i) {
+      s.q[i] = random.symmetric(pi);
+      s.posture[i] = random.symmetric(pi);
+    }
+    if (near_singular) s.q[4] = random.symmetric(0.01);
+    EXPECT_EQ(forward(s.arm, s.q, s.target), Status::ok);
+    double q[max_joints];
+    std::copy(s.q, s.q + max_joints, q);
+    TickReport<double> report{};
+    EXPECT_EQ(tick(s.arm, default_tick_options(s.arm), s.target, q, &report), Status::ok);
+    if (near_singular || report.smallest_singular_value > 0.02) return s;
+  }
+}
+
+// What every answer has to be, whatever was asked: met by the forward model, within limits, different, sorted.
+void expect_sound(const Sample& s, const SolutionOptions<double>& options, const Solutions<double>& found) {
+  const int joints = s.arm.joint_count;
+  for (int k = 0; k < found.count; ++k) {
+    Pose<double> reached{};
+    ASSERT_EQ(forward(s.arm, found.q[k], reached), Status::ok);
+    ASSERT_LE(position_distance(reached, s.target), 1.01 * options.tick.position_tolerance_m);
+    if (options.tick.task == Task::pose) {
+      ASSERT_LE(small_angle(reached, s.target), 1.01 * options.tick.rotation_tolerance_rad);
+    }
+    for (int i = 0; i < joints; ++i) {
+      const std::uint32_t bit = 1U << static_cast<std::uint32_t>(i);
+      if ((s.arm.min_mask & bit) != 0U) {
+        ASSERT_GE(found.q[k][i], s.arm.min[i]);
+      }
+      if ((s.arm.max_mask & bit) != 0U) {
+        ASSERT_LE(found.q[k][i], s.arm.max[i]);
+      }
+    }
+    if (k > 0) {
+      ASSERT_GE(found.distance[k], found.distance[k - 1]);
+    }
+    for (int other = 0; other < k; ++other) ASSERT_GT(turn_distance(found.q[k], found.q[other], joints), 1e-3);
+  }
+}
+
+bool contains(const Solutions<double>& found, const double* q, double within) {
+  for (int k = 0; k < found.count; ++k) {
+    if (turn_distance(found.q[k], q, 6) < within) return true;
+  }
+  return false;
+}
+
+int incomplete(double errors_mm, bool near_singular, int count) {
+  Random random(21);
+  int missed = 0;
+  for (int n = 0; n < count; ++n) {
+    const Sample s = sample(n % 2 == 0 ? ur5() : wrist_arm(), random, errors_mm, near_singular);
+    SolutionOptions<double> options = default_solution_options(s.arm);
+    EXPECT_EQ(options.restarts, 0);
+    Solutions<double> found{};
+    EXPECT_EQ(find_solutions(s.arm, options, s.target, s.posture, found), Status::ok);
+    expect_sound(s, options, found);
+    options.restarts = 60;
+    Solutions<double> truth{};
+    EXPECT_EQ(find_solutions(s.arm, options, s.target, s.posture, truth), Status::ok);
+    if (!contains(found, s.q, 1e-2) || truth.count > found.count) ++missed;
+  }
+  return missed;
+}
+
+TEST(FindSolutions, FindsEveryRegularSolutionAtOneMillimetre) { EXPECT_EQ(incomplete(1.0, false, cases(100)), 0); }
+TEST(FindSolutions, FindsEveryRegularSolutionAtFiveMillimetres) { EXPECT_LE(incomplete(5.0, false, cases(100)), 1); }
+TEST(FindSolutions, FindsNineOfTenNearSingular) { EXPECT_LE(incomplete(1.0, true, cases(50)), 5); }
+
+TEST(FindSolutions, KnowsTheFamilies) {
+  Arm<double> arm{};
+  ASSERT_EQ(make_arm(ur5(), arm), Status::ok);
+  EXPECT_EQ(family(arm), Family::parallel);
+  ASSERT_EQ(make_arm(wrist_arm(), arm), Status::ok);
+  EXPECT_EQ(family(arm), Family::spherical_wrist);
+  ASSERT_EQ(make_arm(seven_joint_arm(), arm), Status::ok);
+  EXPECT_EQ(family(arm), Family::general);
+  ASSERT_EQ(make_arm(published_robot(), arm), Status::ok);
+  EXPECT_EQ(family(arm), Family::parallel);
+}
+
+// A nominal arm of either family has exactly eight solutions of a pose well inside, and they come without refinement's
+// help: the closed form is exact there.
+TEST(FindSolutions, FindsAllEightOfANominalArm) {
+  Arm<double> arm{};
+  ASSERT_EQ(make_arm(ur5(), arm), Status::ok);
+  const double q[6] = {0.3, -1.2, 1.5, 0.4, 1.1, -0.6};
+  Pose<double> target{};
+  ASSERT_EQ(forward(arm, q, target), Status::ok);
+  Solutions<double> found{};
+  ASSERT_EQ(find_solutions(arm, default_solution_options(arm), target, q, found), Status::ok);
+  EXPECT_EQ(found.count, 8);
+  EXPECT_LT(found.distance[0], 1e-9);
+}
+
+TEST(FindSolutions, TakesTheAllowedTurnNearestToThePosture) {
+  Geometry g = ur5();
+  for (int i = 0; i < 6; ++i) {
+    g.joint[i].has_min = g.joint[i].has_max = 1;
+    g.joint[i].min = -2 * pi;
+    g.joint[i].max = 2 * pi;
+  }
+  Sample s;
+  ASSERT_EQ(make_arm(g, s.arm), Status::ok);
+  const double q[6] = {0.3, -1.2, 1.5, 0.4, 1.1, 6.0};
+  std::copy(q, q + 6, s.q);
+  std::copy(q, q + 6, s.posture);
+  ASSERT_EQ(forward(s.arm, s.q, s.target), Status::ok);
+  const auto options = default_solution_options(s.arm);
+  Solutions<double> found{};
+  ASSERT_EQ(find_solutions(s.arm, options, s.target, s.posture, found), Status::ok);
+  expect_sound(s, options, found);
+  EXPECT_NEAR(found.q[0][5], 6.0, 1e-9);
+  // Narrow limits: the same turn is not allowed, the one before is.
+  g.joint[5].max = 1.0;
+  ASSERT_EQ(make_arm(g, s.arm), Status::ok);
+  ASSERT_EQ(find_solutions(s.arm, options, s.target, s.posture, found), Status::ok);
+  expect_sound(s, options, found);
+  bool turned_back = false;
+  for (int k = 0; k < found.count; ++k) turned_back = turned_back || std::fabs(found.q[k][5] - (6.0 - 2 * pi)) < 1e-9;
+  EXPECT_TRUE(turned_back);
+}
+
+TEST(FindSolutions, SignsAndCouplingsAreReadings) {
+  Geometry g = wrist_arm();
+  g.joint[2].sign = -1;
+  g.joint[2].coupling[1] = 1.0;
+  g.joint[5].coupling[4] = -0.5;
+  Sample s;
+  ASSERT_EQ(make_arm(g, s.arm), Status::ok);
+  const double q[6] = {0.3, -0.4, 0.5, 0.4, 1.1, -0.6};
+  std::copy(q, q + 6, s.q);
+  std::copy(q, q + 6, s.posture);
+  ASSERT_EQ(forward(s.arm, s.q, s.target), Status::ok);
+  const auto options = default_solution_options(s.arm);
+  Solutions<double> found{};
+  ASSERT_EQ(find_solutions(s.arm, options, s.target, s.posture, found), Status::ok);
+  expect_sound(s, options, found);
+  EXPECT_LT(found.distance[0], 1e-9);
+  EXPECT_GE(found.count, 4);
+}
+
+TEST(ColdStart, SolvesEveryReachablePoseFromAnywhere) {
+  Random random(23);
+  for (int n = 0; n < cases(1000); ++n) {
+    const Geometry nominal = n % 2 == 0 ? ur5() : wrist_arm();
+    const Sample s = sample(nominal, random, n % 3 == 0 ? 5.0 : 1.0, n % 5 == 0);
+    double q[max_joints];
+    std::copy(s.posture, s.posture + max_joints, q);
+    ASSERT_EQ(cold_start(s.arm, default_solution_options(s.arm), s.target, q), Status::ok) << n;
+    Pose<double> reached{};
+    ASSERT_EQ(forward(s.arm, q, reached), Status::ok);
+    ASSERT_LE(position_distance(reached, s.target), 1.01e-10);
+    ASSERT_LE(small_angle(reached, s.target), 1.01e-10);
+  }
+}
+
+// No closed form: axes that are neither parallel nor meet; seven joints; five with a task; a slide.
+TEST(ColdStart, SolvesArmsWithoutAClosedForm) {
+  const Geometry six = from_table({{0, 0, 0, 0.3}, {-80, 0.1, -90, 0.05}, {10, 0.5, 0, 0.02}, {-70, 0.15, 0, 0.45},
+                                   {75, 0.06, 0, 0.08}, {-85, 0.04, 0, 0.1}});
+  Geometry slide = from_table({{0, 0, 0, 0}, {-90, 0, 0, 0.2}, {90, 0, 0, 0.4}, {0, 0, 0, 0}, {-90, 0, 0, 0}, {90, 0, 0, 0.1}});
+  slide.joint[2].kind = JointKind::prismatic;
+  slide.joint[2].has_min = slide.joint[2].has_max = 1;
+  slide.joint[2].min = -0.3;
+  slide.joint[2].max = 0.5;
+  const struct {
+    Geometry geometry;
+    Task task;
+  } arms[] = {{six, Task::pose},
+              {slide, Task::pose},
+              {seven_joint_arm(), Task::pose},
+              {five_joint_arm(), Task::position_axis},
+              {five_joint_arm(), Task::position}};
+  Random random(24);
+  for (const auto& a : arms) {
+    for (int n = 0; n < cases(50); ++n) {
+      Arm<double> arm{};
+      ASSERT_EQ(make_arm(with_errors(a.geometry, random, 1e-3, 0.1 * deg), arm), Status::ok);
+      double truth[max_joints];
+      double q[max_joints];
+      for (int i = 0; i < a.geometry.joint_count; ++i) {
+        const bool slides = a.geometry.joint[i].kind == JointKind::prismatic;
+        truth[i] = slides ? random.uniform(-0.3, 0.5) : random.symmetric(pi);
+        q[i] = slides ? 0.0 : random.symmetric(pi);
+      }
+      Pose<double> target{};
+      ASSERT_EQ(forward(arm, truth, target), Status::ok);
+      SolutionOptions<double> options = default_solution_options(arm);
+      options.tick.task = a.task;
+      ASSERT_EQ(cold_start(arm, options, target, q), Status::ok) << n;
+      Pose<double> reached{};
+      ASSERT_EQ(forward(arm, q, reached), Status::ok);
+      ASSERT_LE(position_distance(reached, target), 1.01e-10);
+    }
+  }
+}
+
+TEST(ColdStart, SaysOutOfReachAndRefusesBadInput) {
+  Arm<double> arm{};
+  ASSERT_EQ(make_arm(ur5(), arm), Status::ok);
+  const double joints[6] = {0.3, -1.2, 1.5, 0.4, 1.1, -0.6};
+  double q[6];
+  std::copy(joints, joints + 6, q);
+  const SolutionOptions<double> options = default_solution_options(arm);
+  const Pose<double> far{{1, 0, 0, 0}, {3.0, 0, 0}};
+  EXPECT_EQ(cold_start(arm, options, far, q), Status::out_of_reach);
+  EXPECT_TRUE(std::equal(q, q + 6, joints));
+  const Pose<double> no_rotation{{1, 1, 0, 0}, {0.3, 0, 0}};
+  EXPECT_EQ(cold_start(arm, options, no_rotation, q), Status::bad_input);
+  SolutionOptions<double> many = options;
+  many.restarts = max_restarts + 1;
+  EXPECT_EQ(cold_start(arm, many, far, q), Status::bad_input);
+  q[2] = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_EQ(cold_start(arm, options, far, q), Status::bad_input);
+}
+
+TEST(ColdStart, WorksInFloat) {
+  Random random(25);
+  for (int n = 0; n < cases(200); ++n) {
+    Arm<float> arm{};
+    ASSERT_EQ(make_arm(with_errors(n % 2 == 0 ? ur5() : wrist_arm(), random, 1e-3, 0.1 * deg), arm), Status::ok);
+    float truth[6];
+    float q[6];
+    for (int i = 0; i < 6; ++i) {
+      truth[i] = static_cast<float>(random.symmetric(pi));
+      q[i] = static_cast<float>(random.symmetric(pi));
+    }
+    Pose<float> target{};
+    ASSERT_EQ(forward(arm, truth, target), Status::ok);
+    ASSERT_EQ(cold_start(arm, default_solution_options(arm), target, q), Status::ok) << n;
+    Pose<float> reached{};
+    ASSERT_EQ(forward(arm, q, reached), Status::ok);
+    ASSERT_LE(position_distance(reached, target), 6e-6F);
+  }
+}
+
+}  // namespace
