@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: MIT
+#include "offline/identify/fit.hpp"
+
+#include <cmath>
+
+#include "offline/error.hpp"
+
+namespace mdhcal::offline {
+
+namespace {
+
+// Weighted squares at a trial estimate; infinite where the geometry is no longer valid.
+double trial_squares(const Estimate& estimate, const Dataset& data, const Selection& selection, double noise_mm,
+                     std::vector<double>& norms) {
+  try {
+    return evaluate(Model(estimate), data, selection, noise_mm, &norms);
+  } catch (const Refusal&) {
+    return HUGE_VAL;
+  }
+}
+
+double penalty(const Estimate& estimate, const Layout& layout, double lambda) {
+  double sum = 0.0;
+  for (double x : deviation(estimate, layout)) sum += x * x;
+  return lambda * sum;
+}
+
+}  // namespace
+
+Triangle sum_of(const std::vector<Triangle>& parts) {
+  if (parts.size() == 1) return parts.front();
+  Triangle whole(parts.front().unknowns());
+  for (const Triangle& part : parts) whole.add(part);
+  return whole;
+}
+
+Fit fit(const Dataset& data, Selection& selection, const Layout& layout, const Estimate& start,
+        const FitControl& control) {
+  Fit out;
+  out.estimate = start;
+  // Without sigma the residual is in mm and so is its floor; with sigma it is in standard deviations.
+  const double floor = states_sigma(data) ? 1.0 : control.noise_mm;
+  const auto frames = static_cast<Eigen::Index>(layout.frame_columns());
+  const auto parameters = static_cast<Eigen::Index>(layout.geometry.size());
+  const auto columns = frames + parameters;
+
+  selection.robust_weight.clear();
+  evaluate(Model(out.estimate), data, selection, control.noise_mm, &out.error_norms);
+  out.scale = robust_scale(out.error_norms, floor);
+  selection.robust_weight = robust_weights(control.loss, out.error_norms, out.scale);
+
+  double damping = 0.0;
+  for (out.iterations = 0; out.iterations < control.max_iterations; ++out.iterations) {
+    out.lambda = control.lambda >= 0.0 ? control.lambda : out.scale * out.scale;
+    Triangle triangle = sum_of(linearise(Model(out.estimate), data, selection, layout, control.noise_mm));
+    const Eigen::MatrixXd& matrix = triangle.matrix();
+    const std::vector<double> now = deviation(out.estimate, layout);
+    const Eigen::VectorXd x0 = Eigen::Map<const Eigen::VectorXd>(now.data(), parameters);
+    const double squares = matrix.col(columns).squaredNorm();
+    const double objective = squares + penalty(out.estimate, layout, out.lambda);
+
+    Eigen::VectorXd step(columns);
+    double trial_objective = HUGE_VAL;
+    Estimate trial;
+    std::vector<double> norms;
+    for (int attempt = 0; attempt < 12; ++attempt) {
+      if (damping > 0.0) {
+        step = damped_step(matrix, layout.frame_columns(), x0, out.lambda, damping);
+      } else {
+        const ReducedSystem system = reduce_frames(matrix, layout.frame_columns(), triangle.row_count());
+        step.tail(parameters) = penalised_problem(system, x0).solution(out.lambda) - x0;
+        step.head(frames) = frame_step(system, step.tail(parameters));
+      }
+      trial = moved(out.estimate, layout, step.data());
+      trial_objective = trial_squares(trial, data, selection, control.noise_mm, norms) +
+                        penalty(trial, layout, out.lambda);
+      // Rounding alone must not count as an increase.
+      if (trial_objective <= objective * (1.0 + 1e-9)) break;
+      damping = damping > 0.0 ? 10.0 * damping : 1e-4;
+    }
+    if (!(trial_objective <= objective * (1.0 + 1e-9))) return out;
+    damping = damping > 1e-6 ? 0.1 * damping : 0.0;
+    out.estimate = trial;
+    out.error_norms = norms;
+    out.scale = robust_scale(out.error_norms, floor);
+    selection.robust_weight = robust_weights(control.loss, out.error_norms, out.scale);
+    if (step.size() == 0 || step.cwiseAbs().maxCoeff() < control.tolerance) {
+      out.converged = damping <= 0.0;
+      if (out.converged) {
+        ++out.iterations;
+        return out;
+      }
+    }
+  }
+  return out;
+}
+
+}  // namespace mdhcal::offline

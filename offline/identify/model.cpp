@@ -1,0 +1,232 @@
+// SPDX-License-Identifier: MIT
+#include "offline/identify/model.hpp"
+
+#include <cmath>
+
+#include "mdhcal/kinematics.hpp"
+#include "offline/error.hpp"
+#include "offline/identify/rigid.hpp"
+
+namespace mdhcal::offline {
+
+namespace {
+
+// A target point at one row, in the base frame, with the frames that its derivatives are read off.
+struct Reach {
+  Frame<double> frames[max_joints + 2];
+  Vector3 base_p_m{};
+};
+
+void reach(const Arm<double>& arm, const double* q, const Vector3& flange_p_m, Reach& out) {
+  if (link_frames(arm, q, out.frames) != Status::ok) {
+    throw InputError("A joint reading is not finite or beyond what the kinematics accept.");
+  }
+  out.base_p_m = apply(out.frames[arm.joint_count + 1], flange_p_m);
+}
+
+Vector3 column_of(const Frame<double>& frame, int k) {
+  return {frame.rotation[k], frame.rotation[3 + k], frame.rotation[6 + k]};
+}
+
+Vector3 origin_of(const Frame<double>& frame) {
+  return {frame.position_m[0], frame.position_m[1], frame.position_m[2]};
+}
+
+// A parameter moves everything beyond it along or about one line, given in the base frame.
+struct Screw {
+  Vector3 axis;
+  Vector3 point;
+  bool turns;
+};
+
+Screw screw_of(const Arm<double>& arm, const Frame<double>* frames, ParameterId id) {
+  const Frame<double>& before = frames[id.link];
+  const Frame<double>& after = frames[id.link + 1];
+  switch (id.key) {
+    case ParameterKey::alpha: return {column_of(before, 0), origin_of(before), true};
+    case ParameterKey::a: return {column_of(before, 0), origin_of(before), false};
+    case ParameterKey::beta: return {column_of(after, 1), origin_of(after), true};
+    case ParameterKey::theta:
+    case ParameterKey::d: break;
+  }
+  // The joint axis, before Rot_y(beta): Rot_x(alpha) z of the frame before.
+  const ArmLink<double>& link = arm.link[id.link];
+  const Vector3 y = column_of(before, 1);
+  const Vector3 z = column_of(before, 2);
+  Vector3 axis{};
+  for (std::size_t k = 0; k < 3; ++k) axis[k] = link.cos_alpha * z[k] - link.sin_alpha * y[k];
+  return {axis, origin_of(after), id.key == ParameterKey::theta};
+}
+
+// d(target position)/d(unknowns), tracker frame [mm per unit]: three rows of `stride`, added with factor `sign`.
+void add_position_jacobian(const Arm<double>& arm, const Estimate& estimate, const Reach& at, std::size_t target,
+                           const Layout& layout, double sign, double* jacobian, std::size_t stride) {
+  const auto put = [&](std::size_t column, const Vector3& direction) {
+    for (std::size_t k = 0; k < 3; ++k) jacobian[k * stride + column] += sign * direction[k];
+  };
+  std::size_t column = 0;
+  if (layout.base) {
+    const Vector3 arm_m = minus(apply(estimate.tracker_T_base, at.base_p_m), layout.pivot_m);
+    put(0, {0.0, -arm_m[2], arm_m[1]});
+    put(1, {arm_m[2], 0.0, -arm_m[0]});
+    put(2, {-arm_m[1], arm_m[0], 0.0});
+    put(3, {1.0, 0.0, 0.0});
+    put(4, {0.0, 1.0, 0.0});
+    put(5, {0.0, 0.0, 1.0});
+    column = 6;
+  }
+  if (layout.target) {
+    const Frame<double>& flange = at.frames[arm.joint_count + 1];
+    for (int k = 0; k < 3; ++k) {
+      put(column + 3 * target + static_cast<std::size_t>(k),
+          rotate(estimate.tracker_T_base, column_of(flange, k)));
+    }
+    column += layout.target_columns();
+  }
+  for (const Parameter& parameter : layout.geometry) {
+    const Screw screw = screw_of(arm, at.frames, parameter.id);
+    Vector3 direction = screw.turns ? cross(screw.axis, minus(at.base_p_m, screw.point)) : screw.axis;
+    for (double& component : direction) component *= 1e3 * parameter.prior;
+    put(column++, rotate(estimate.tracker_T_base, direction));
+  }
+}
+
+// d(rotation vector residual)/d(unknowns): the angular velocity through the inverse left Jacobian at the residual.
+void add_rotation_jacobian(const Arm<double>& arm, const Estimate& estimate, const Reach& at, const Layout& layout,
+                           const Vector3& rotation_rad, double* jacobian, std::size_t stride) {
+  const auto put = [&](std::size_t column, const Vector3& turn_rad) {
+    const Vector3 rate = inverse_left_jacobian(rotation_rad, turn_rad);
+    for (std::size_t k = 0; k < 3; ++k) jacobian[k * stride + column] = rotation_lever_mm * rate[k];
+  };
+  if (layout.base) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      Vector3 axis{};
+      axis[k] = 1e-3;
+      put(k, axis);
+    }
+  }
+  std::size_t column = layout.frame_columns();
+  for (const Parameter& parameter : layout.geometry) {
+    const Screw screw = screw_of(arm, at.frames, parameter.id);
+    if (screw.turns) {
+      Vector3 turn = rotate(estimate.tracker_T_base, screw.axis);
+      for (double& component : turn) component *= parameter.prior;
+      put(column, turn);
+    }
+    ++column;
+  }
+}
+
+}  // namespace
+
+std::size_t residual_count(MeasurementKind kind) {
+  switch (kind) {
+    case MeasurementKind::position: return 3;
+    case MeasurementKind::pose: return 6;
+    case MeasurementKind::distance: break;
+  }
+  return 1;
+}
+
+Model::Model(const Estimate& estimate) : estimate_(estimate) {
+  if (make_arm(estimate.geometry, arm_) != Status::ok) {
+    throw Refusal("The estimate left the valid range of a geometry: the measurements do not fit this robot.");
+  }
+}
+
+Vector3 Model::target_position(const double* q, std::size_t target) const {
+  Reach at;
+  reach(arm_, q, estimate_.flange_p_m[target], at);
+  return apply(estimate_.tracker_T_base, at.base_p_m);
+}
+
+std::size_t Model::residual(const Dataset& data, std::size_t row, double* residual_mm) const {
+  return residual(data, row, Layout{}, residual_mm, nullptr, 0);
+}
+
+std::size_t Model::residual(const Dataset& data, std::size_t row, const Layout& layout, double* residual_mm,
+                            double* jacobian, std::size_t stride) const {
+  const Measurement& m = data.rows[row];
+  const std::size_t count = residual_count(m.kind);
+  if (jacobian != nullptr) {
+    for (std::size_t k = 0; k < count; ++k) {
+      for (std::size_t c = 0; c < layout.columns(); ++c) jacobian[k * stride + c] = 0.0;
+    }
+  }
+  Reach at;
+  reach(arm_, m.q.data(), estimate_.flange_p_m[m.target], at);
+  const Vector3 here = apply(estimate_.tracker_T_base, at.base_p_m);
+
+  if (m.kind == MeasurementKind::distance) {
+    const bool fixed_end = m.other_row < 0;
+    Vector3 there = m.position_m;
+    Reach other;
+    std::size_t other_target = 0;
+    if (!fixed_end) {
+      const Measurement& end = data.rows[static_cast<std::size_t>(m.other_row)];
+      other_target = end.target;
+      reach(arm_, end.q.data(), estimate_.flange_p_m[other_target], other);
+      there = apply(estimate_.tracker_T_base, other.base_p_m);
+    }
+    const Vector3 span = minus(here, there);
+    const double length = norm(span);
+    residual_mm[0] = 1e3 * (length - m.distance_m);
+    if (jacobian != nullptr && length > 0.0) {
+      std::vector<double> ends(3 * layout.columns(), 0.0);
+      add_position_jacobian(arm_, estimate_, at, m.target, layout, 1.0, ends.data(), layout.columns());
+      if (!fixed_end) {
+        add_position_jacobian(arm_, estimate_, other, other_target, layout, -1.0, ends.data(), layout.columns());
+      }
+      for (std::size_t c = 0; c < layout.columns(); ++c) {
+        for (std::size_t k = 0; k < 3; ++k) jacobian[c] += span[k] / length * ends[k * layout.columns() + c];
+      }
+    }
+    return count;
+  }
+
+  for (std::size_t k = 0; k < 3; ++k) residual_mm[k] = 1e3 * (here[k] - m.position_m[k]);
+  if (jacobian != nullptr) {
+    add_position_jacobian(arm_, estimate_, at, m.target, layout, 1.0, jacobian, stride);
+  }
+  if (m.kind == MeasurementKind::pose) {
+    const Frame<double> predicted = multiply(estimate_.tracker_T_base, at.frames[arm_.joint_count + 1]);
+    const Frame<double> measured = frame_of(m.quaternion, m.position_m);
+    const Vector3 rotation_rad = log_of_rotation(multiply(predicted, inverse(measured)));
+    for (std::size_t k = 0; k < 3; ++k) residual_mm[3 + k] = rotation_lever_mm * rotation_rad[k];
+    if (jacobian != nullptr) {
+      add_rotation_jacobian(arm_, estimate_, at, layout, rotation_rad, jacobian + 3 * stride, stride);
+    }
+  }
+  return count;
+}
+
+Estimate moved(const Estimate& estimate, const Layout& layout, const double* step) {
+  Estimate out = estimate;
+  std::size_t column = 0;
+  if (layout.base) {
+    const Frame<double> turn = rotation_about({1e-3 * step[0], 1e-3 * step[1], 1e-3 * step[2]}, layout.pivot_m);
+    out.tracker_T_base = orthonormal(multiply(turn, estimate.tracker_T_base));
+    for (std::size_t k = 0; k < 3; ++k) out.tracker_T_base.position_m[k] += 1e-3 * step[3 + k];
+    column = 6;
+  }
+  if (layout.target) {
+    for (std::size_t t = 0; t < layout.targets; ++t) {
+      for (std::size_t k = 0; k < 3; ++k) out.flange_p_m[t][k] += 1e-3 * step[column++];
+    }
+  }
+  for (const Parameter& parameter : layout.geometry) {
+    set_value(out.geometry, parameter.id, value(estimate.geometry, parameter.id) + parameter.prior * step[column++]);
+  }
+  return out;
+}
+
+std::vector<double> deviation(const Estimate& estimate, const Layout& layout) {
+  std::vector<double> out;
+  out.reserve(layout.geometry.size());
+  for (const Parameter& parameter : layout.geometry) {
+    out.push_back((value(estimate.geometry, parameter.id) - parameter.nominal) / parameter.prior);
+  }
+  return out;
+}
+
+}  // namespace mdhcal::offline

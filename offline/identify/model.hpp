@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: MIT
+// The measurement model: what a row should read for a given geometry, base frame and target points, and how that
+// changes with every unknown.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <vector>
+
+#include "mdhcal/arm.hpp"
+#include "offline/identify/parameters.hpp"
+#include "offline/measure/dataset.hpp"
+
+namespace mdhcal::offline {
+
+/// A value of every unknown.
+struct Estimate {
+  Geometry geometry{};
+  Frame<double> tracker_T_base{{1, 0, 0, 0, 1, 0, 0, 0, 1}, {0, 0, 0}};
+  std::vector<Vector3> flange_p_m;  ///< one a target of the dataset
+};
+
+/// Which unknowns there are and in which column each stands: base (rotation [mrad] about `pivot_m`, then translation
+/// [mm], both in the tracker frame), the targets (flange frame [mm]), then the geometry, in units of the prior.
+struct Layout {
+  bool base = true;
+  bool target = true;
+  std::size_t targets = 1;
+  std::vector<Parameter> geometry;
+  Vector3 pivot_m{};  ///< the point that a base rotation leaves in place, tracker frame
+
+  std::size_t base_columns() const { return base ? 6 : 0; }
+  std::size_t target_columns() const { return target ? 3 * targets : 0; }
+  std::size_t frame_columns() const { return base_columns() + target_columns(); }  ///< unpenalised
+  std::size_t columns() const { return frame_columns() + geometry.size(); }
+};
+
+/// The most scalar residuals of a row of measurements (a full pose).
+inline constexpr std::size_t max_row_residuals = 6;
+/// A measured rotation counts like the displacement that it causes at this distance [mm]: a rotation error of
+/// 0.2 mrad, usual for a six-dimensional tracker target, then weighs like 0.02 mm.
+inline constexpr double rotation_lever_mm = 100.0;
+
+std::size_t residual_count(MeasurementKind kind);
+
+/// An estimate prepared for evaluation.
+class Model {
+ public:
+  /// Throws Refusal if the geometry has left the valid range.
+  explicit Model(const Estimate& estimate);
+
+  const Estimate& estimate() const { return estimate_; }
+
+  /// Position of a target point at the readings q, in the tracker frame [m].
+  Vector3 target_position(const double* q, std::size_t target) const;
+
+  /// Predicted minus measured [mm], residual_count() of them: x, y, z in the tracker frame; for a full pose then the
+  /// rotation vector of predicted * measured^-1 times the lever; for a distance the difference of the lengths.
+  /// Not weighted. Returns the count.
+  std::size_t residual(const Dataset& data, std::size_t row, double* residual_mm) const;
+
+  /// residual() and its derivative with respect to the unknowns of `layout` [mm per unit of the column], row-major
+  /// with `stride` >= layout.columns(). (Li 2022, Eq. 5-7, each column the derivative of one factor)
+  std::size_t residual(const Dataset& data, std::size_t row, const Layout& layout, double* residual_mm,
+                       double* jacobian, std::size_t stride) const;
+
+ private:
+  Estimate estimate_;
+  Arm<double> arm_{};
+};
+
+/// The estimate moved by `step` (layout.columns() numbers in the columns' units).
+Estimate moved(const Estimate& estimate, const Layout& layout, const double* step);
+
+/// The geometry's deviation from nominal in units of the prior, one number a parameter.
+std::vector<double> deviation(const Estimate& estimate, const Layout& layout);
+
+}  // namespace mdhcal::offline

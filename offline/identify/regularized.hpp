@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: MIT
+// The regularized, robust identification with lambda chosen by a rule: what `--method rpim` runs.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include "offline/identify/fit.hpp"
+#include "offline/identify/folds.hpp"
+#include "offline/identify/lambda_rules.hpp"
+
+namespace mdhcal::offline {
+
+enum class LambdaRule { rpim, rpim_train, l_curve, gcv, cv, discrepancy, quasi_optimality, fixed };
+
+struct RegularizedControl {
+  LambdaRule rule = LambdaRule::rpim;
+  double lambda = 0;            ///< (rule fixed)
+  double noise_mm = 0.02;
+  std::optional<double> sigma;  ///< of a scaled residual, for the discrepancy principle
+  bool robust = true;
+  std::uint64_t seed = 1;
+};
+
+struct RegularizedFit {
+  Fit fit;                 ///< converged at `choice.lambda`
+  LambdaChoice choice;
+  LambdaChoice corner;     ///< the L-curve of the same problem, for the record
+};
+
+/// Robust starting fit with lambda following the residual's scale (Huber, then Tukey), then the rule on the problem
+/// linearised there, then the fit with that lambda; again until lambda stays. `selection` returns with the weights.
+RegularizedFit regularized_fit(const Dataset& data, Selection& selection, const Layout& layout, const Estimate& start,
+                               const RegularizedControl& control);
+
+}  // namespace mdhcal::offline
