@@ -19,6 +19,21 @@ double trial_squares(const Estimate& estimate, const Dataset& data, const Select
   }
 }
 
+// A fit takes degrees of freedom from the residuals that its scale is read off: what m scalar residuals leave after p
+// parameters is small by the root of (m - p) / m. At most threefold: beyond, the floor has to hold.
+double freedom_factor(double scalars, double parameters) {
+  return scalars > parameters * 9.0 / 8.0 ? std::sqrt(scalars / (scalars - parameters)) : 3.0;
+}
+
+double scalars_used(const Dataset& data, const Selection& selection) {
+  double sum = 0.0;
+  for (std::size_t i = 0; i < selection.rows.size(); ++i) {
+    if (!selection.robust_weight.empty() && !(selection.robust_weight[i] > 0.0)) continue;
+    sum += static_cast<double>(residual_count(data.rows[selection.rows[i]].kind));
+  }
+  return sum;
+}
+
 double penalty(const Estimate& estimate, const Layout& layout, double lambda) {
   double sum = 0.0;
   for (double x : deviation(estimate, layout)) sum += x * x;
@@ -46,10 +61,11 @@ Fit fit(const Dataset& data, Selection& selection, const Layout& layout, const E
 
   selection.robust_weight.clear();
   evaluate(Model(out.estimate), data, selection, control.noise_mm, &out.error_norms);
-  out.scale = robust_scale(out.error_norms, floor);
+  out.scale = robust_scale(out.error_norms, 1.0, floor);
   selection.robust_weight = robust_weights(control.loss, out.error_norms, out.scale);
 
   double damping = 0.0;
+  double parameters_used = 0.0;
   for (out.iterations = 0; out.iterations < control.max_iterations; ++out.iterations) {
     out.lambda = control.lambda >= 0.0 ? control.lambda : out.scale * out.scale;
     Triangle triangle = sum_of(linearise(Model(out.estimate), data, selection, layout, control.noise_mm));
@@ -68,7 +84,9 @@ Fit fit(const Dataset& data, Selection& selection, const Layout& layout, const E
         step = damped_step(matrix, layout.frame_columns(), x0, out.lambda, damping);
       } else {
         const ReducedSystem system = reduce_frames(matrix, layout.frame_columns(), triangle.row_count());
-        step.tail(parameters) = penalised_problem(system, x0).solution(out.lambda) - x0;
+        const SpectralProblem problem = penalised_problem(system, x0);
+        step.tail(parameters) = problem.solution(out.lambda) - x0;
+        parameters_used = static_cast<double>(system.frame_rank) + problem.effective_parameters(out.lambda);
         step.head(frames) = frame_step(system, step.tail(parameters));
       }
       trial = moved(out.estimate, layout, step.data());
@@ -82,7 +100,8 @@ Fit fit(const Dataset& data, Selection& selection, const Layout& layout, const E
     damping = damping > 1e-6 ? 0.1 * damping : 0.0;
     out.estimate = trial;
     out.error_norms = norms;
-    out.scale = robust_scale(out.error_norms, floor);
+    const double scalars = control.independent_share * scalars_used(data, selection);
+    out.scale = robust_scale(out.error_norms, freedom_factor(scalars, parameters_used), floor);
     selection.robust_weight = robust_weights(control.loss, out.error_norms, out.scale);
     if (step.size() == 0 || step.cwiseAbs().maxCoeff() < control.tolerance) {
       out.converged = damping <= 0.0;

@@ -42,6 +42,11 @@ class FoldJudge {
   std::vector<Part> part_;
 };
 
+/// How much of the rows counts as independent, in (0, 1]: repeats of one configuration (rows of one group and target)
+/// share the errors that the model does not hold, so n repeats inform like n / (1 + (n - 1) r), r being the correlation
+/// of their residuals. 1 without repeats. (the design effect, Kish 1965)
+double independent_share(const Dataset& data, const Selection& selection, const Model& model);
+
 /// The same with the training rows themselves as the judge, as in the source.
 double training_error_mm(const Dataset& data, const Selection& selection, const Layout& layout, const Model& model,
                          const ReducedSystem& system, const SpectralProblem& problem, double lambda);

@@ -148,6 +148,19 @@ LambdaChoice generalised_cross_validation(const SpectralProblem& problem) {
   });
 }
 
+LambdaChoice marginal_likelihood(const SpectralProblem& problem, double independent_share) {
+  return global_minimum(problem, "marginal-likelihood", [&](double lambda) {
+    double squares = problem.outside2;
+    double volume = 0.0;
+    for (Eigen::Index i = 0; i < problem.rank(); ++i) {
+      const double sum = problem.s(i) * problem.s(i) + lambda;
+      squares += problem.beta(i) * problem.beta(i) * lambda / sum;
+      volume += std::log(sum / lambda);
+    }
+    return independent_share * static_cast<double>(problem.data_count) * std::log(squares) + volume;
+  });
+}
+
 LambdaChoice quasi_optimality(const SpectralProblem& problem) {
   return global_minimum(problem, "quasi-optimality", [&](double lambda) {
     const auto sum = problem.s.array().square() + lambda;

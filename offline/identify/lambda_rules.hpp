@@ -41,6 +41,11 @@ LambdaChoice generalised_cross_validation(const SpectralProblem& problem);
 /// rows less the effective parameters. (Morozov 1966, with the degrees of freedom that the fit takes)
 LambdaChoice discrepancy(const SpectralProblem& problem, double sigma);
 
+/// Greatest marginal likelihood of the data when noise and deviations are both normal, their variances unknown but for
+/// the ratio lambda that is sought (restricted maximum likelihood: base and targets projected out; Patterson and
+/// Thompson 1971). `independent_share`: of the rows, see independent_share() in folds.hpp.
+LambdaChoice marginal_likelihood(const SpectralProblem& problem, double independent_share);
+
 /// Minimum of |lambda dx/dlambda|. (Tikhonov and Glasko 1965)
 LambdaChoice quasi_optimality(const SpectralProblem& problem);
 

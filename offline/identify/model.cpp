@@ -21,7 +21,7 @@ void reach(const Arm<double>& arm, const double* q, const Vector3& flange_p_m, R
   if (link_frames(arm, q, out.frames) != Status::ok) {
     throw InputError("A joint reading is not finite or beyond what the kinematics accept.");
   }
-  out.base_p_m = apply(out.frames[arm.joint_count + 1], flange_p_m);
+  out.base_p_m = transformed(out.frames[arm.joint_count + 1], flange_p_m);
 }
 
 Vector3 column_of(const Frame<double>& frame, int k) {
@@ -66,7 +66,7 @@ void add_position_jacobian(const Arm<double>& arm, const Estimate& estimate, con
   };
   std::size_t column = 0;
   if (layout.base) {
-    const Vector3 arm_m = minus(apply(estimate.tracker_T_base, at.base_p_m), layout.pivot_m);
+    const Vector3 arm_m = minus(transformed(estimate.tracker_T_base, at.base_p_m), layout.pivot_m);
     put(0, {0.0, -arm_m[2], arm_m[1]});
     put(1, {arm_m[2], 0.0, -arm_m[0]});
     put(2, {-arm_m[1], arm_m[0], 0.0});
@@ -137,7 +137,7 @@ Model::Model(const Estimate& estimate) : estimate_(estimate) {
 Vector3 Model::target_position(const double* q, std::size_t target) const {
   Reach at;
   reach(arm_, q, estimate_.flange_p_m[target], at);
-  return apply(estimate_.tracker_T_base, at.base_p_m);
+  return transformed(estimate_.tracker_T_base, at.base_p_m);
 }
 
 std::size_t Model::residual(const Dataset& data, std::size_t row, double* residual_mm) const {
@@ -155,7 +155,7 @@ std::size_t Model::residual(const Dataset& data, std::size_t row, const Layout& 
   }
   Reach at;
   reach(arm_, m.q.data(), estimate_.flange_p_m[m.target], at);
-  const Vector3 here = apply(estimate_.tracker_T_base, at.base_p_m);
+  const Vector3 here = transformed(estimate_.tracker_T_base, at.base_p_m);
 
   if (m.kind == MeasurementKind::distance) {
     const bool fixed_end = m.other_row < 0;
@@ -166,7 +166,7 @@ std::size_t Model::residual(const Dataset& data, std::size_t row, const Layout& 
       const Measurement& end = data.rows[static_cast<std::size_t>(m.other_row)];
       other_target = end.target;
       reach(arm_, end.q.data(), estimate_.flange_p_m[other_target], other);
-      there = apply(estimate_.tracker_T_base, other.base_p_m);
+      there = transformed(estimate_.tracker_T_base, other.base_p_m);
     }
     const Vector3 span = minus(here, there);
     const double length = norm(span);

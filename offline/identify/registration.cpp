@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "offline/identify/registration.hpp"
 
+#include <Eigen/LU>
 #include <Eigen/QR>
 #include <Eigen/SVD>
 
@@ -72,7 +73,7 @@ void refit_translations(const std::vector<Sight>& sight, const Layout& layout, E
   Eigen::VectorXd b(a.rows());
   for (std::size_t i = 0; i < sight.size(); ++i) {
     const Frame<double> tracker_T_flange = multiply(estimate.tracker_T_base, sight[i].base_T_flange);
-    const Vector3 predicted = apply(tracker_T_flange, estimate.flange_p_m[sight[i].target]);
+    const Vector3 predicted = transformed(tracker_T_flange, estimate.flange_p_m[sight[i].target]);
     for (std::size_t k = 0; k < 3; ++k) {
       const auto r = static_cast<Eigen::Index>(3 * i + k);
       b(r) = sight[i].measured_m[k] - predicted[k];
@@ -217,7 +218,7 @@ void register_base(const std::vector<Sight>& sight, const Layout& layout, Estima
   std::vector<Vector3> a;
   std::vector<Vector3> b;
   for (const Sight& s : sight) {
-    a.push_back(apply(s.base_T_flange, estimate.flange_p_m[s.target]));
+    a.push_back(transformed(s.base_T_flange, estimate.flange_p_m[s.target]));
     b.push_back(s.measured_m);
   }
   estimate.tracker_T_base = rigid_fit(a, b, {});

@@ -37,6 +37,7 @@ LambdaChoice choose(const Dataset& data, const Selection& selection, const Layou
           "rpim-train");
     case LambdaRule::l_curve: return corner;
     case LambdaRule::gcv: return generalised_cross_validation(problem);
+    case LambdaRule::marginal_likelihood: return marginal_likelihood(problem, independent_share(data, selection, model));
     case LambdaRule::quasi_optimality: return quasi_optimality(problem);
     case LambdaRule::discrepancy: {
       if (!control.sigma) {
@@ -76,6 +77,7 @@ RegularizedFit regularized_fit(const Dataset& data, Selection& selection, const 
   stage.loss = control.robust ? Loss::huber : Loss::squares;
   stage.tolerance = 0.05;  // only a start for the next stage
   out.fit = fit(data, selection, layout, start, stage);
+  stage.independent_share = independent_share(data, selection, Model(out.fit.estimate));
   stage.loss = control.robust ? Loss::tukey : Loss::squares;
   stage.tolerance = 1e-2;
   out.fit = fit(data, selection, layout, out.fit.estimate, stage);

@@ -11,7 +11,7 @@
 
 namespace mdhcal::offline {
 
-enum class LambdaRule { rpim, rpim_train, l_curve, gcv, cv, discrepancy, quasi_optimality, fixed };
+enum class LambdaRule { rpim, rpim_train, l_curve, gcv, cv, discrepancy, quasi_optimality, fixed, marginal_likelihood };
 
 struct RegularizedControl {
   LambdaRule rule = LambdaRule::rpim;

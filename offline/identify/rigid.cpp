@@ -20,7 +20,7 @@ Vector3 rotate(const Frame<double>& frame, const Vector3& v) {
           r[6] * v[0] + r[7] * v[1] + r[8] * v[2]};
 }
 
-Vector3 apply(const Frame<double>& frame, const Vector3& p) {
+Vector3 transformed(const Frame<double>& frame, const Vector3& p) {
   const Vector3 turned = rotate(frame, p);
   return {turned[0] + frame.position_m[0], turned[1] + frame.position_m[1], turned[2] + frame.position_m[2]};
 }

@@ -16,7 +16,7 @@ double dot(const Vector3& a, const Vector3& b);
 double norm(const Vector3& a);
 
 Vector3 rotate(const Frame<double>& frame, const Vector3& v);  ///< rotation only
-Vector3 apply(const Frame<double>& frame, const Vector3& p);   ///< rotation and translation
+Vector3 transformed(const Frame<double>& frame, const Vector3& p);   ///< rotation and translation
 Frame<double> multiply(const Frame<double>& a, const Frame<double>& b);
 Frame<double> inverse(const Frame<double>& frame);
 

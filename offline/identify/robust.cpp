@@ -5,12 +5,12 @@
 
 namespace mdhcal::offline {
 
-double robust_scale(const std::vector<double>& error_norms, double floor) {
+double robust_scale(const std::vector<double>& error_norms, double factor, double floor) {
   if (error_norms.empty()) return floor;
   std::vector<double> sorted = error_norms;
   const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
   std::nth_element(sorted.begin(), middle, sorted.end());
-  return std::max(*middle, floor);
+  return std::max(factor * *middle, floor);
 }
 
 double robust_weight(Loss loss, double error_norm, double scale) {
