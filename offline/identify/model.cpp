@@ -123,6 +123,7 @@ std::size_t residual_count(MeasurementKind kind) {
   switch (kind) {
     case MeasurementKind::position: return 3;
     case MeasurementKind::pose: return 6;
+    case MeasurementKind::joints: return 0;
     case MeasurementKind::distance: break;
   }
   return 1;
@@ -153,6 +154,7 @@ std::size_t Model::residual(const Dataset& data, std::size_t row, const Layout& 
       for (std::size_t c = 0; c < layout.columns(); ++c) jacobian[k * stride + c] = 0.0;
     }
   }
+  if (count == 0) return 0;
   Reach at;
   reach(arm_, m.q.data(), estimate_.flange_p_m[m.target], at);
   const Vector3 here = transformed(estimate_.tracker_T_base, at.base_p_m);

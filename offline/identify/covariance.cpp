@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: MIT
+#include "offline/identify/covariance.hpp"
+
+#include <Eigen/QR>
+
+#include <algorithm>
+#include <cmath>
+
+#include "offline/identify/lambda_rules.hpp"
+
+namespace mdhcal::offline {
+
+namespace {
+
+struct Noise {
+  double variance = 0;  // to be used with the weighted triangle
+  double freedom = 0;
+};
+
+// Chi medians, as in standard_error_norm(): back from the standardised norm to the sum of squares.
+double squared_norm(double error_norm, std::size_t count) {
+  const double median = count == 1 ? 0.674490 : count == 3 ? 1.538172 : 2.312596;
+  return error_norm * error_norm * median * median;
+}
+
+Noise noise_of(const Dataset& data, const Selection& selection, const Fit& fit, double parameters,
+               double independent_share, double floor) {
+  // psi(r) = w(|r|) r: its variance over its mean slope squared is the estimate's variance in units of (J^T J)^-1;
+  // times the mean weight, in units of (J^T W J)^-1, which is what the triangle holds.
+  double scalars = 0;
+  double weight = 0;
+  double slope = 0;
+  double psi2 = 0;
+  for (std::size_t i = 0; i < selection.rows.size(); ++i) {
+    const auto count = residual_count(data.rows[selection.rows[i]].kind);
+    const auto n = static_cast<double>(count);
+    const double w = selection.robust_weight.empty() ? 1.0 : selection.robust_weight[i];
+    if (!(w > 0.0)) continue;
+    const double u = fit.error_norms[i] / (tukey_threshold * fit.scale);
+    const double dw = selection.robust_weight.empty() ? 0.0 : -4.0 * u * u * (1.0 - u * u);  // |r| dw/d|r|
+    scalars += n;
+    weight += n * w;
+    slope += n * w + dw;
+    psi2 += w * w * squared_norm(fit.error_norms[i], count);
+  }
+  Noise out;
+  out.freedom = independent_share * scalars - parameters;
+  if (!(out.freedom >= 1.0) || !(slope > 0.0)) {
+    out.freedom = std::max(1.0, out.freedom);
+    out.variance = floor * floor / independent_share;
+    return out;
+  }
+  const double one = psi2 / scalars * (weight / scalars) / ((slope / scalars) * (slope / scalars));
+  out.variance = one * scalars / out.freedom;
+  // With hardly any freedom left the residuals say nothing about the noise: then the stated noise is the least.
+  if (out.freedom < 10.0) out.variance = std::max(out.variance, floor * floor / independent_share);
+  return out;
+}
+
+double student_975(double freedom) {
+  // Expansion about the normal quantile (Fisher and Cornish 1960); exact to 1 % from 3 degrees of freedom.
+  const double z = 1.959963984540054;
+  const double z3 = z * z * z;
+  const double z5 = z3 * z * z;
+  const double f = std::max(3.0, freedom);
+  return z + (z3 + z) / (4.0 * f) + (5.0 * z5 + 16.0 * z3 + 3.0 * z) / (96.0 * f * f);
+}
+
+}  // namespace
+
+Covariance covariance_of(const Dataset& data, const Selection& selection, const Layout& layout,
+                         const ReducedSystem& system, const SpectralProblem& problem, const Fit& fit, double lambda,
+                         double independent_share, double noise_mm) {
+  Covariance out;
+  out.size = layout.columns();
+  const auto frames = static_cast<Eigen::Index>(layout.frame_columns());
+  const auto n = static_cast<Eigen::Index>(layout.geometry.size());
+  const double floor = states_sigma(data) ? 1.0 : noise_mm;
+  const double used = static_cast<double>(system.frame_rank) + problem.effective_parameters(lambda);
+  const Noise noise = noise_of(data, selection, fit, used, independent_share, floor);
+  out.sigma = std::sqrt(noise.variance * independent_share);
+  out.freedom = noise.freedom;
+  out.coverage_factor = student_975(noise.freedom);
+  const double ratio = marginal_likelihood(problem, independent_share).lambda;
+  if (problem.rank() > 0 && ratio > 0.0) {
+    out.prior_scale = std::sqrt(std::max(1.0, noise.variance * independent_share / ratio));
+  }
+
+  const double t2 = out.prior_scale * out.prior_scale;
+  const Eigen::ArrayXd s2 = problem.s.array().square();
+  const Eigen::ArrayXd variance = (noise.variance * s2 + lambda * lambda * t2) / (s2 + lambda).square();
+  Eigen::MatrixXd geometry = problem.v * variance.matrix().asDiagonal() * problem.v.transpose();
+  geometry += t2 * (Eigen::MatrixXd::Identity(n, n) - problem.v * problem.v.transpose());
+
+  Eigen::MatrixXd all = Eigen::MatrixXd::Zero(frames + n, frames + n);
+  all.bottomRightCorner(n, n) = geometry;
+  if (frames > 0) {
+    Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> solver;
+    solver.setThreshold(jacobian_tolerance);
+    solver.compute(system.frame);
+    const Eigen::MatrixXd spread = solver.solve(Eigen::MatrixXd::Identity(frames, frames));
+    const Eigen::MatrixXd follow = -spread * system.frame_by_geometry;
+    all.topLeftCorner(frames, frames) =
+        noise.variance * spread * spread.transpose() + follow * geometry * follow.transpose();
+    all.topRightCorner(frames, n) = follow * geometry;
+    all.bottomLeftCorner(n, frames) = all.topRightCorner(frames, n).transpose();
+  }
+  out.value.resize(out.size * out.size);
+  for (Eigen::Index i = 0; i < all.rows(); ++i) {
+    for (Eigen::Index j = 0; j < all.cols(); ++j) {
+      out.value[static_cast<std::size_t>(i) * out.size + static_cast<std::size_t>(j)] = 0.5 * (all(i, j) + all(j, i));
+    }
+  }
+  return out;
+}
+
+double predicted_position_sd_mm(const Model& model, const Layout& layout, const Covariance& covariance,
+                                const double* q, std::size_t target, double* axes_mm) {
+  Dataset one;
+  one.rows.resize(1);
+  std::copy(q, q + model.estimate().geometry.joint_count, one.rows[0].q.begin());
+  one.rows[0].target = static_cast<std::uint32_t>(target);
+  const std::size_t n = layout.columns();
+  std::vector<double> jacobian(3 * n);
+  double residual[3];
+  model.residual(one, 0, layout, residual, jacobian.data(), n);
+  double trace = 0.0;
+  for (std::size_t k = 0; k < 3; ++k) {
+    double variance = 0.0;
+    for (std::size_t i = 0; i < n; ++i) {
+      for (std::size_t j = 0; j < n; ++j) variance += jacobian[k * n + i] * covariance.at(i, j) * jacobian[k * n + j];
+    }
+    if (axes_mm != nullptr) axes_mm[k] = std::sqrt(std::max(0.0, variance));
+    trace += std::max(0.0, variance);
+  }
+  return std::sqrt(trace);
+}
+
+}  // namespace mdhcal::offline

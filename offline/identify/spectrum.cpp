@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: MIT
+#include "offline/identify/spectrum.hpp"
+
+#include <Eigen/SVD>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <numeric>
+
+#include "offline/simulate/random.hpp"
+
+namespace mdhcal::offline {
+
+namespace {
+
+// Directions below this share of the largest are named as weak.
+constexpr double weak_share = 1e-2;
+// A parameter is identifiable if no more than this part of it lies in lost directions.
+constexpr double lost_share = 1e-6;
+
+Eigen::VectorXd scaling(const Eigen::MatrixXd& a) {
+  Eigen::VectorXd norms = a.colwise().norm().transpose();
+  for (double& n : norms) {
+    if (!(n > 0.0)) n = 1.0;
+  }
+  return norms;
+}
+
+std::vector<double> random_readings(const Geometry& geometry, Random& random) {
+  std::vector<double> q(max_joints, 0.0);
+  for (std::int32_t i = 0; i < geometry.joint_count; ++i) {
+    const Joint& joint = geometry.joint[i];
+    const double half = joint.kind == JointKind::revolute ? 3.14159265358979323846 : 0.5;
+    const double low = joint.has_min == 1 ? std::max(joint.min, -half) : -half;
+    const double high = joint.has_max == 1 ? std::min(joint.max, half) : half;
+    q[static_cast<std::size_t>(i)] = low < high ? random.uniform(low, high) : low;
+  }
+  return q;
+}
+
+std::string readings_text(const Geometry& geometry, const std::vector<double>& q) {
+  std::string text;
+  for (std::int32_t i = 0; i < geometry.joint_count; ++i) {
+    const bool revolute = geometry.joint[i].kind == JointKind::revolute;
+    char word[48];
+    std::snprintf(word, sizeof word, "%sq%d = %.0f %s", i > 0 ? ", " : "", static_cast<int>(i + 1),
+                  q[static_cast<std::size_t>(i)] * (revolute ? 57.29577951308232 : 1e3), revolute ? "deg" : "mm");
+    text += word;
+  }
+  return text;
+}
+
+// Looks for a pose whose target would move when the parameters move along `direction` (with base and targets following
+// as the present poses make them): such a pose tells the direction.
+std::string advice(const Layout& layout, const Model& model, const Eigen::VectorXd& direction, std::uint64_t seed) {
+  constexpr int trials = 300;
+  Random random(seed);
+  Dataset trial;
+  trial.rows.resize(1);
+  const auto columns = static_cast<Eigen::Index>(layout.columns());
+  Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> jacobian(3, columns);
+  double best = 0.0;
+  double typical = 0.0;
+  std::vector<double> best_q;
+  for (int i = 0; i < trials; ++i) {
+    const std::vector<double> q = random_readings(model.estimate().geometry, random);
+    std::copy(q.begin(), q.end(), trial.rows[0].q.begin());
+    double residual[3];
+    model.residual(trial, 0, layout, residual, jacobian.data(), layout.columns());
+    const double movement = (jacobian * direction).norm();
+    typical = std::max(typical, jacobian.norm() * direction.norm());
+    if (movement > best) best = movement, best_q = q;
+  }
+  if (!(best > 1e-6 * typical)) {
+    return "No pose of this arm with this target tells them apart: put the target further off the last axis, or fix "
+           "one of them.";
+  }
+  return "A pose such as " + readings_text(model.estimate().geometry, best_q) + " would tell them apart.";
+}
+
+}  // namespace
+
+Spectrum spectrum_of(const ReducedSystem& system) {
+  Spectrum out;
+  out.scalar_rows = system.row_count;
+  if (system.geometry.cols() == 0) return out;
+  const Eigen::MatrixXd scaled = system.geometry * scaling(system.geometry).cwiseInverse().asDiagonal();
+  // Unit columns hide how strongly the poses see anything at all; the mean column length puts that back.
+  const Eigen::VectorXd norms = scaling(system.geometry);
+  const double mean_norm = norms.mean();
+  const Eigen::VectorXd s = Eigen::BDCSVD<Eigen::MatrixXd>(scaled).singularValues();
+  double log_product = 0.0;
+  double reciprocals = 0.0;
+  for (double value : s) {
+    out.singular_values.push_back(value * mean_norm);
+    if (value > jacobian_tolerance * s(0) && value > 0.0) {
+      ++out.rank;
+      log_product += std::log(value * mean_norm);
+      reciprocals += 1.0 / (value * mean_norm);
+    }
+  }
+  if (out.rank == 0) return out;
+  const double first = out.singular_values.front();
+  const double last = out.singular_values[out.rank - 1];
+  out.condition = first / last;
+  out.observability = {std::exp(log_product / static_cast<double>(out.rank)) /
+                           std::sqrt(static_cast<double>(std::max<std::size_t>(1, system.row_count))),
+                       last / first, last, last * last / first, 1.0 / reciprocals};
+  return out;
+}
+
+Identifiability identifiability(const ReducedSystem& system, const SpectralProblem& problem, const Layout& layout,
+                                const Model& model, double lambda, std::uint64_t seed) {
+  Identifiability out;
+  out.after = spectrum_of(system);
+  out.frame_unknowns = layout.frame_columns();
+  out.frame_rank = static_cast<std::size_t>(system.frame_rank);
+  const auto n = static_cast<Eigen::Index>(layout.geometry.size());
+  if (n == 0) return out;
+  if (problem.rank() > 0) {
+    const double last = problem.rank() < n ? 0.0 : problem.s(problem.rank() - 1);
+    const double bottom = last * last + lambda;
+    out.condition_regularized = bottom > 0.0 ? std::sqrt((problem.s(0) * problem.s(0) + lambda) / bottom) : 0.0;
+  }
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const Eigen::ArrayXd share = problem.v.row(i).transpose().array().square();
+    out.identifiable.push_back(1.0 - share.sum() <= lost_share);
+    out.resolution.push_back((share * problem.s.array().square() / (problem.s.array().square() + lambda)).sum());
+  }
+
+  const Eigen::VectorXd norms = scaling(system.geometry);
+  const Eigen::MatrixXd scaled = system.geometry * norms.cwiseInverse().asDiagonal();
+  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(scaled, Eigen::ComputeFullV);
+  const Eigen::VectorXd& s = svd.singularValues();
+  for (Eigen::Index k = n - 1; k >= 0; --k) {
+    const double relative = k < s.size() && s(0) > 0.0 ? s(k) / s(0) : 0.0;
+    if (relative >= weak_share) break;
+    const Eigen::VectorXd v = svd.matrixV().col(k);
+    WeakDirection weak;
+    weak.relative_singular_value = relative > jacobian_tolerance ? relative : 0.0;
+    std::vector<Eigen::Index> order(static_cast<std::size_t>(n));
+    std::iota(order.begin(), order.end(), 0);
+    std::sort(order.begin(), order.end(),
+              [&](Eigen::Index a, Eigen::Index b) { return std::fabs(v(a)) > std::fabs(v(b)); });
+    for (Eigen::Index i : order) {
+      if (std::fabs(v(i)) < 0.2 * std::fabs(v(order.front()))) break;
+      weak.members.push_back(name(layout.geometry[static_cast<std::size_t>(i)].id));
+    }
+    const Eigen::VectorXd direction = norms.cwiseInverse().asDiagonal() * v;
+    Eigen::VectorXd full(static_cast<Eigen::Index>(layout.columns()));
+    ReducedSystem still = system;
+    still.frame_residual.setZero();
+    full.tail(n) = direction;
+    full.head(full.size() - n) = frame_step(still, direction);
+    weak.advice = advice(layout, model, full, seed);
+    out.weak.push_back(std::move(weak));
+  }
+  return out;
+}
+
+}  // namespace mdhcal::offline

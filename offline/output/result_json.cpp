@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: MIT
+#include "offline/output/result_json.hpp"
+
+#include <cmath>
+
+#include <nlohmann/json.hpp>
+
+namespace mdhcal::offline {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr double degrees = 57.29577951308232;
+
+Json finite(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
+
+Json figures(const Statistics& s) {
+  if (s.count == 0) return nullptr;
+  return {{"count", s.count},           {"mean_mm", finite(s.mean)}, {"median_mm", finite(s.median)},
+          {"max_mm", finite(s.max)},    {"sd_mm", finite(s.sd)},     {"rms_mm", finite(s.rms)},
+          {"p95_mm", finite(s.p95)}};
+}
+
+Json split(const SplitFigures& f) {
+  return {{"before", figures(f.before)},
+          {"after", figures(f.after)},
+          {"after_good", figures(f.after_good)},
+          {"outliers", f.outliers}};
+}
+
+Json vector_mm(const Vector3& v) { return {finite(v[0]), finite(v[1]), finite(v[2])}; }
+
+Json spectrum(const Spectrum& s) {
+  Json json;
+  json["singular_values"] = Json::array();
+  for (double value : s.singular_values) json["singular_values"].push_back(finite(value));
+  json["rank"] = s.rank;
+  json["condition"] = s.rank > 0 ? finite(s.condition) : Json(nullptr);
+  for (std::size_t k = 0; k < s.observability.size(); ++k) {
+    json["O" + std::to_string(k + 1)] = s.rank > 0 ? finite(s.observability[k]) : Json(nullptr);
+  }
+  return json;
+}
+
+Json parameter(const EstimatedParameter& p) {
+  const bool angle = is_angle(p.id);
+  const std::string unit = angle ? "_deg" : "_mm";
+  const double factor = angle ? degrees : 1e3;
+  Json json;
+  json["name"] = name(p.id);
+  json["unit"] = angle ? "deg" : "mm";
+  json["nominal"] = finite(p.nominal * factor);
+  json["deviation"] = finite(p.deviation * factor);
+  json["standard_deviation"] = finite(p.standard_deviation * factor);
+  json["interval_95"] = {finite(p.low * factor), finite(p.high * factor)};
+  json["nominal" + unit] = finite(p.nominal * factor);
+  json["deviation" + unit] = finite(p.deviation * factor);
+  json["standard_deviation" + unit] = finite(p.standard_deviation * factor);
+  json["prior" + unit] = finite(p.prior * factor);
+  json["resolution"] = finite(p.resolution);
+  json["identifiable"] = p.identifiable;
+  return json;
+}
+
+Json lambda(const LambdaReport& report) {
+  Json json;
+  json["rule"] = report.rule;
+  json["value"] = finite(report.lambda);
+  json["note"] = report.note.empty() ? Json(nullptr) : Json(report.note);
+  json["corner"] = report.corner ? finite(*report.corner) : Json(nullptr);
+  const auto curve = [](const std::vector<LambdaReport::Point>& points, const char* criterion) {
+    Json list = Json::array();
+    for (const LambdaReport::Point& p : points) {
+      list.push_back({{"lambda", finite(p.lambda)},
+                      {"residual_norm", finite(p.residual_norm)},
+                      {"solution_norm", finite(p.solution_norm)},
+                      {criterion, finite(p.criterion)}});
+    }
+    return list;
+  };
+  json["curve"] = curve(report.curve, "criterion");
+  json["l_curve"] = curve(report.l_curve, "curvature");
+  return json;
+}
+
+Json frame(const Frame<double>& f) {
+  const double* r = f.rotation;
+  Json rows = Json::array();
+  for (int i = 0; i < 3; ++i) rows.push_back({finite(r[3 * i]), finite(r[3 * i + 1]), finite(r[3 * i + 2])});
+  return {{"xyz_mm",
+           {finite(1e3 * f.position_m[0]), finite(1e3 * f.position_m[1]), finite(1e3 * f.position_m[2])}},
+          {"rotation_matrix", rows}};
+}
+
+}  // namespace
+
+std::string result_json(const Calibration& c) {
+  Json json;
+  json["tool"] = MDHCAL_TOOL_VERSION;
+  json["robot"] = c.robot.name;
+  json["serial"] = c.robot.serial.empty() ? Json(nullptr) : Json(c.robot.serial);
+  json["measurements_sha256"] = c.training.digest_sha256;
+  json["method"] = c.method;
+  json["verdict"] = c.verdict;
+  json["converged"] = c.converged;
+  json["iterations"] = c.iterations;
+  json["train"] = split(c.train);
+  json["test"] = c.test ? split(*c.test) : Json(nullptr);
+  json["outliers"] = c.train.outliers;
+  json["outlier_threshold_mm"] = finite(c.outlier_threshold_mm);
+  json["residual_scale_mm"] = finite(c.scale_mm);
+  json["noise_sigma_mm"] = finite(c.covariance.sigma);
+  json["lambda"] = lambda(c.lambda);
+  json["parameters"] = Json::array();
+  for (const EstimatedParameter& p : c.parameters) json["parameters"].push_back(parameter(p));
+  json["tracker_T_base"] = frame(c.estimate.tracker_T_base);
+  json["targets"] = Json::array();
+  for (std::size_t t = 0; t < c.estimate.flange_p_m.size(); ++t) {
+    const Vector3& p = c.estimate.flange_p_m[t];
+    json["targets"].push_back({{"name", t < c.training.targets.size() ? c.training.targets[t] : std::string()},
+                               {"xyz_mm", vector_mm({1e3 * p[0], 1e3 * p[1], 1e3 * p[2]})}});
+  }
+  Json& identifiability = json["identifiability"];
+  identifiability["before"] = spectrum(c.identifiability.before);
+  identifiability["after"] = spectrum(c.identifiability.after);
+  identifiability["condition_regularized"] = finite(c.identifiability.condition_regularized);
+  identifiability["scalar_measurements"] = c.identifiability.after.scalar_rows;
+  identifiability["base_and_target_unknowns"] = c.identifiability.frame_unknowns;
+  identifiability["base_and_target_rank"] = c.identifiability.frame_rank;
+  identifiability["weak_directions"] = Json::array();
+  for (const WeakDirection& w : c.identifiability.weak) {
+    identifiability["weak_directions"].push_back({{"parameters", w.members},
+                                                  {"relative_singular_value", finite(w.relative_singular_value)},
+                                                  {"advice", w.advice}});
+  }
+  json["uncertainty"] = {{"prior_scale", finite(c.covariance.prior_scale)},
+                         {"degrees_of_freedom", finite(c.covariance.freedom)},
+                         {"coverage_factor", finite(c.covariance.coverage_factor)}};
+  json["dependences"] = Json::array();
+  for (const Dependence& d : c.dependences) {
+    json["dependences"].push_back({{"quantity", d.quantity},
+                                   {"count", d.count},
+                                   {"mean_residual_mm", vector_mm(d.mean_residual_mm)},
+                                   {"correlation", finite(d.correlation)}});
+  }
+  json["decisions"] = c.decisions;
+  json["notes"] = c.notes;
+  return json.dump(2) + "\n";
+}
+
+}  // namespace mdhcal::offline
