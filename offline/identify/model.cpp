@@ -21,7 +21,7 @@ void reach(const Arm<double>& arm, const double* q, const Vector3& flange_p_m, R
   if (link_frames(arm, q, out.frames) != Status::ok) {
     throw InputError("A joint reading is not finite or beyond what the kinematics accept.");
   }
-  out.base_p_m = transformed(out.frames[arm.joint_count + 1], flange_p_m);
+  out.base_p_m = transform(out.frames[arm.joint_count + 1], flange_p_m);
 }
 
 Vector3 column_of(const Frame<double>& frame, int k) {
@@ -66,7 +66,7 @@ void add_position_jacobian(const Arm<double>& arm, const Estimate& estimate, con
   };
   std::size_t column = 0;
   if (layout.base) {
-    const Vector3 arm_m = minus(transformed(estimate.tracker_T_base, at.base_p_m), layout.pivot_m);
+    const Vector3 arm_m = minus(transform(estimate.tracker_T_base, at.base_p_m), layout.pivot_m);
     put(0, {0.0, -arm_m[2], arm_m[1]});
     put(1, {arm_m[2], 0.0, -arm_m[0]});
     put(2, {-arm_m[1], arm_m[0], 0.0});
@@ -138,7 +138,7 @@ Model::Model(const Estimate& estimate) : estimate_(estimate) {
 Vector3 Model::target_position(const double* q, std::size_t target) const {
   Reach at;
   reach(arm_, q, estimate_.flange_p_m[target], at);
-  return transformed(estimate_.tracker_T_base, at.base_p_m);
+  return transform(estimate_.tracker_T_base, at.base_p_m);
 }
 
 std::size_t Model::residual(const Dataset& data, std::size_t row, double* residual_mm) const {
@@ -157,7 +157,7 @@ std::size_t Model::residual(const Dataset& data, std::size_t row, const Layout& 
   if (count == 0) return 0;
   Reach at;
   reach(arm_, m.q.data(), estimate_.flange_p_m[m.target], at);
-  const Vector3 here = transformed(estimate_.tracker_T_base, at.base_p_m);
+  const Vector3 here = transform(estimate_.tracker_T_base, at.base_p_m);
 
   if (m.kind == MeasurementKind::distance) {
     const bool fixed_end = m.other_row < 0;
@@ -168,7 +168,7 @@ std::size_t Model::residual(const Dataset& data, std::size_t row, const Layout& 
       const Measurement& end = data.rows[static_cast<std::size_t>(m.other_row)];
       other_target = end.target;
       reach(arm_, end.q.data(), estimate_.flange_p_m[other_target], other);
-      there = transformed(estimate_.tracker_T_base, other.base_p_m);
+      there = transform(estimate_.tracker_T_base, other.base_p_m);
     }
     const Vector3 span = minus(here, there);
     const double length = norm(span);
@@ -191,9 +191,9 @@ std::size_t Model::residual(const Dataset& data, std::size_t row, const Layout& 
     add_position_jacobian(arm_, estimate_, at, m.target, layout, 1.0, jacobian, stride);
   }
   if (m.kind == MeasurementKind::pose) {
-    const Frame<double> predicted = multiply(estimate_.tracker_T_base, at.frames[arm_.joint_count + 1]);
+    const Frame<double> predicted = compose(estimate_.tracker_T_base, at.frames[arm_.joint_count + 1]);
     const Frame<double> measured = frame_of(m.quaternion, m.position_m);
-    const Vector3 rotation_rad = log_of_rotation(multiply(predicted, inverse(measured)));
+    const Vector3 rotation_rad = log_of_rotation(compose(predicted, inverted(measured)));
     for (std::size_t k = 0; k < 3; ++k) residual_mm[3 + k] = rotation_lever_mm * rotation_rad[k];
     if (jacobian != nullptr) {
       add_rotation_jacobian(arm_, estimate_, at, layout, rotation_rad, jacobian + 3 * stride, stride);
@@ -207,7 +207,7 @@ Estimate moved(const Estimate& estimate, const Layout& layout, const double* ste
   std::size_t column = 0;
   if (layout.base) {
     const Frame<double> turn = rotation_about({1e-3 * step[0], 1e-3 * step[1], 1e-3 * step[2]}, layout.pivot_m);
-    out.tracker_T_base = orthonormal(multiply(turn, estimate.tracker_T_base));
+    out.tracker_T_base = orthonormal(compose(turn, estimate.tracker_T_base));
     for (std::size_t k = 0; k < 3; ++k) out.tracker_T_base.position_m[k] += 1e-3 * step[3 + k];
     column = 6;
   }

@@ -72,8 +72,8 @@ void refit_translations(const std::vector<Sight>& sight, const Layout& layout, E
   Eigen::MatrixXd a = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(3 * sight.size()), columns);
   Eigen::VectorXd b(a.rows());
   for (std::size_t i = 0; i < sight.size(); ++i) {
-    const Frame<double> tracker_T_flange = multiply(estimate.tracker_T_base, sight[i].base_T_flange);
-    const Vector3 predicted = transformed(tracker_T_flange, estimate.flange_p_m[sight[i].target]);
+    const Frame<double> tracker_T_flange = compose(estimate.tracker_T_base, sight[i].base_T_flange);
+    const Vector3 predicted = transform(tracker_T_flange, estimate.flange_p_m[sight[i].target]);
     for (std::size_t k = 0; k < 3; ++k) {
       const auto r = static_cast<Eigen::Index>(3 * i + k);
       b(r) = sight[i].measured_m[k] - predicted[k];
@@ -218,7 +218,7 @@ void register_base(const std::vector<Sight>& sight, const Layout& layout, Estima
   std::vector<Vector3> a;
   std::vector<Vector3> b;
   for (const Sight& s : sight) {
-    a.push_back(transformed(s.base_T_flange, estimate.flange_p_m[s.target]));
+    a.push_back(transform(s.base_T_flange, estimate.flange_p_m[s.target]));
     b.push_back(s.measured_m);
   }
   estimate.tracker_T_base = rigid_fit(a, b, {});

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "offline/identify/rigid.hpp"
 
-#include <algorithm>
 #include <cmath>
 
 namespace mdhcal::offline {
@@ -20,34 +19,6 @@ Vector3 rotate(const Frame<double>& frame, const Vector3& v) {
           r[6] * v[0] + r[7] * v[1] + r[8] * v[2]};
 }
 
-Vector3 transformed(const Frame<double>& frame, const Vector3& p) {
-  const Vector3 turned = rotate(frame, p);
-  return {turned[0] + frame.position_m[0], turned[1] + frame.position_m[1], turned[2] + frame.position_m[2]};
-}
-
-Frame<double> multiply(const Frame<double>& a, const Frame<double>& b) {
-  Frame<double> c{};
-  for (int i = 0; i < 3; ++i) {
-    for (int j = 0; j < 3; ++j) {
-      for (int k = 0; k < 3; ++k) c.rotation[3 * i + j] += a.rotation[3 * i + k] * b.rotation[3 * k + j];
-    }
-    c.position_m[i] = a.position_m[i];
-    for (int k = 0; k < 3; ++k) c.position_m[i] += a.rotation[3 * i + k] * b.position_m[k];
-  }
-  return c;
-}
-
-Frame<double> inverse(const Frame<double>& frame) {
-  Frame<double> out{};
-  for (int i = 0; i < 3; ++i) {
-    for (int j = 0; j < 3; ++j) out.rotation[3 * i + j] = frame.rotation[3 * j + i];
-  }
-  for (int i = 0; i < 3; ++i) {
-    for (int k = 0; k < 3; ++k) out.position_m[i] -= out.rotation[3 * i + k] * frame.position_m[k];
-  }
-  return out;
-}
-
 Frame<double> frame_of(const std::array<double, 4>& quaternion, const Vector3& position_m) {
   double length = 0.0;
   for (double c : quaternion) length += c * c;
@@ -60,33 +31,6 @@ Frame<double> frame_of(const std::array<double, 4>& quaternion, const Vector3& p
            1 - 2 * (x * x + z * z), 2 * (y * z - w * x), 2 * (x * z - w * y), 2 * (y * z + w * x),
            1 - 2 * (x * x + y * y)},
           {position_m[0], position_m[1], position_m[2]}};
-}
-
-Frame<double> frame_of(const Pose<double>& pose) {
-  return frame_of(std::array<double, 4>{pose.quaternion[0], pose.quaternion[1], pose.quaternion[2], pose.quaternion[3]},
-                  {pose.position_m[0], pose.position_m[1], pose.position_m[2]});
-}
-
-Pose<double> pose_of(const Frame<double>& frame) {
-  // The largest of the four squared components leads, so that no cancellation is worse than fourfold (Shepperd 1978).
-  const double* r = frame.rotation;
-  const double trace = r[0] + r[4] + r[8];
-  double q[4];
-  if (trace >= r[0] && trace >= r[4] && trace >= r[8]) {
-    q[0] = 1 + trace, q[1] = r[7] - r[5], q[2] = r[2] - r[6], q[3] = r[3] - r[1];
-  } else if (r[0] >= r[4] && r[0] >= r[8]) {
-    q[0] = r[7] - r[5], q[1] = 1 + r[0] - r[4] - r[8], q[2] = r[1] + r[3], q[3] = r[2] + r[6];
-  } else if (r[4] >= r[8]) {
-    q[0] = r[2] - r[6], q[1] = r[1] + r[3], q[2] = 1 - r[0] + r[4] - r[8], q[3] = r[5] + r[7];
-  } else {
-    q[0] = r[3] - r[1], q[1] = r[2] + r[6], q[2] = r[5] + r[7], q[3] = 1 - r[0] - r[4] + r[8];
-  }
-  double length = std::sqrt((q[0] * q[0] + q[1] * q[1]) + (q[2] * q[2] + q[3] * q[3]));
-  if (q[0] < 0.0) length = -length;
-  Pose<double> pose{};
-  for (int k = 0; k < 4; ++k) pose.quaternion[k] = q[k] / length;
-  for (int k = 0; k < 3; ++k) pose.position_m[k] = frame.position_m[k];
-  return pose;
 }
 
 Frame<double> rotation_about(const Vector3& rotation_rad, const Vector3& point_m) {
@@ -103,11 +47,7 @@ Frame<double> rotation_about(const Vector3& rotation_rad, const Vector3& point_m
 
 Vector3 log_of_rotation(const Frame<double>& frame) {
   const Pose<double> pose = pose_of(frame);
-  const Vector3 v{pose.quaternion[1], pose.quaternion[2], pose.quaternion[3]};
-  const double sine = norm(v);
-  if (!(sine > 0.0)) return {0.0, 0.0, 0.0};
-  const double scale = 2.0 * std::atan2(sine, pose.quaternion[0]) / sine;
-  return {scale * v[0], scale * v[1], scale * v[2]};
+  return rotation_vector_of({pose.quaternion[0], pose.quaternion[1], pose.quaternion[2], pose.quaternion[3]});
 }
 
 Vector3 inverse_left_jacobian(const Vector3& rotation_rad, const Vector3& turn) {

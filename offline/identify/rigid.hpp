@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: MIT
-// Rigid transforms and small vectors for identification, on the plain types of lib. Lengths [m], angles [rad].
+// What identification needs of small vectors and rotations beyond robot/rotation.hpp. Lengths [m], angles [rad].
 #pragma once
 
 #include <array>
 
 #include "mdhcal/arm.hpp"
 #include "offline/robot/robot.hpp"
+#include "offline/robot/rotation.hpp"
 
 namespace mdhcal::offline {
 
@@ -16,14 +17,9 @@ double dot(const Vector3& a, const Vector3& b);
 double norm(const Vector3& a);
 
 Vector3 rotate(const Frame<double>& frame, const Vector3& v);  ///< rotation only
-Vector3 transformed(const Frame<double>& frame, const Vector3& p);   ///< rotation and translation
-Frame<double> multiply(const Frame<double>& a, const Frame<double>& b);
-Frame<double> inverse(const Frame<double>& frame);
 
 /// From a quaternion w, x, y, z (normalised here) and a position.
 Frame<double> frame_of(const std::array<double, 4>& quaternion, const Vector3& position_m);
-Pose<double> pose_of(const Frame<double>& frame);
-Frame<double> frame_of(const Pose<double>& pose);
 
 /// The rotation by the rotation vector that leaves `point_m` in place (Rodrigues).
 Frame<double> rotation_about(const Vector3& rotation_rad, const Vector3& point_m);

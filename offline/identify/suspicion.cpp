@@ -107,7 +107,7 @@ struct Split {
 double squares(const std::vector<Vector3>& a, const std::vector<Vector3>& b, const Frame<double>& frame) {
   double sum = 0.0;
   for (std::size_t i = 0; i < a.size(); ++i) {
-    const Vector3 d = minus(transformed(frame, a[i]), b[i]);
+    const Vector3 d = minus(transform(frame, a[i]), b[i]);
     sum += dot(d, d);
   }
   return sum;
@@ -194,9 +194,9 @@ void check_poses(const Robot& robot, const Dataset& data, const std::vector<std:
   for (std::size_t row : rows) {
     if (forward(arm, data.rows[row].q.data(), pose) != Status::ok) continue;
     const Frame<double> frame = frame_of(pose);
-    if (!seen) reference = inverse(frame);
+    if (!seen) reference = inverted(frame);
     seen = true;
-    turned = std::max(turned, norm(log_of_rotation(multiply(reference, frame))));
+    turned = std::max(turned, norm(log_of_rotation(compose(reference, frame))));
   }
   if (turned * degrees < 0.5) {
     throw Refusal("The flange has one orientation throughout (it turns by " + number(turned * degrees, "%.2f") +
@@ -275,9 +275,9 @@ std::optional<TrackerMove> find_tracker_move(const Dataset& data, const std::vec
     const Frame<double> back = rigid_fit(measured, predicted, {});
     for (std::size_t i = split.at; i < usable.size(); ++i) {
       Measurement& m = joined.rows[usable[i]];
-      m.position_m = transformed(back, m.position_m);
+      m.position_m = transform(back, m.position_m);
     }
-    total = multiply(back, total);
+    total = compose(back, total);
     current = fit(joined, selection, setup.layout, current.estimate, control);
     if (current.scale < one_frame / 3.0) break;
   }
@@ -285,7 +285,7 @@ std::optional<TrackerMove> find_tracker_move(const Dataset& data, const std::vec
   TrackerMove move;
   move.first_row_after = usable[split.at];
   const Vector3 place = data.rows[usable[split.at]].position_m;
-  move.shift_mm = 1e3 * norm(minus(transformed(total, place), place));
+  move.shift_mm = 1e3 * norm(minus(transform(total, place), place));
   move.turn_deg = degrees * norm(log_of_rotation(total));
   return move;
 }
@@ -298,7 +298,7 @@ std::vector<std::string> targets_on_last_axis(const Estimate& estimate, const Da
   const Frame<double> last_T_flange = frame_of(estimate.geometry.last_T_flange);
   const Frame<double> beta = rotation_about({0.0, estimate.geometry.link[n - 1].beta_rad, 0.0}, {0.0, 0.0, 0.0});
   for (std::size_t t = 0; t < estimate.flange_p_m.size(); ++t) {
-    const Vector3 p = transformed(multiply(beta, last_T_flange), estimate.flange_p_m[t]);
+    const Vector3 p = transform(compose(beta, last_T_flange), estimate.flange_p_m[t]);
     const double radius_mm = 1e3 * std::hypot(p[0], p[1]);
     if (radius_mm >= 1.0) continue;
     const std::string word = t < data.targets.size() && !data.targets[t].empty() ? " " + data.targets[t] : "";
