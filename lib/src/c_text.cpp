@@ -1,0 +1,5 @@
+// SPDX-License-Identifier: MIT
+#include "mdhcal.h"
+#include "mdhcal/status.hpp"
+
+extern "C" const char* mdhcal_text(std::int32_t status) { return mdhcal::text(static_cast<mdhcal::Status>(status)); }
