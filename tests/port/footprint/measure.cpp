@@ -6,9 +6,13 @@
 #include <type_traits>
 
 #include "counter.hpp"
+#include "golden_blobs.hpp"
 #include "inputs.hpp"
+#include "mdhcal/crc32.hpp"
 #include "mdhcal/inverse.hpp"
 #include "mdhcal/kinematics.hpp"
+#include "mdhcal/port/store.hpp"
+#include "mdhcal/self_test.hpp"
 
 namespace {
 
@@ -121,6 +125,51 @@ void measure_kinematics() {
   }
 }
 
+Model model;
+std::uint8_t buffer[blob_size];
+StoreState store_state;
+
+// A flash in memory that does nothing but hold bytes: what is left is the store's own cost.
+constexpr FlashGeometry flash_geometry{32, 8192, 2, 0xFF};
+std::uint8_t flash_bytes[2 * 8192];
+
+Status read_flash(void*, std::uint32_t address, std::uint8_t* to, std::uint32_t size) {
+  std::copy_n(flash_bytes + address, size, to);
+  return Status::ok;
+}
+Status program_flash(void*, std::uint32_t address, const std::uint8_t* granule) {
+  std::copy_n(granule, flash_geometry.granule_bytes, flash_bytes + address);
+  return Status::ok;
+}
+Status erase_flash(void*, std::uint32_t address) {
+  std::fill_n(flash_bytes + address, flash_geometry.sector_bytes, flash_geometry.erased_value);
+  return Status::ok;
+}
+constexpr Flash memory_flash{flash_geometry, read_flash, program_flash, erase_flash, nullptr};
+constexpr Loader any_blob{[](const std::uint8_t*, std::size_t, void*) { return Status::ok; }, nullptr};
+
+void measure_blob() {
+  static Status status;
+  constexpr int times = 3;
+  const auto as_it_is = [](int) {};
+  const auto& bytes = golden::six_joints;
+  measure("crc32", "-", "blob", as_it_is, [] { store_state.sequence = crc32(golden::six_joints, blob_size); }, times);
+  measure("decode", "-", "golden", as_it_is,
+          [] { status = decode(golden::six_joints, blob_size, DecodeOptions{}, model); }, times);
+  if (decode(bytes, blob_size, DecodeOptions{}, model) != Status::ok) std::printf("the golden blob is refused\n");
+  status = make_arm(model.geometry, State<double>::arm);
+  status = make_arm(model.geometry, State<float>::arm);
+  measure("self_test", "double", "golden", as_it_is, [] { status = self_test(model, State<double>::arm); }, times);
+  measure("self_test", "float", "golden", as_it_is, [] { status = self_test(model, State<float>::arm); }, times);
+  std::fill(std::begin(flash_bytes), std::end(flash_bytes), flash_geometry.erased_value);
+  store_state = {1, -1, 0, {Status::ok, Status::ok}};
+  measure("update", "-", "memory", as_it_is,
+          [] { status = update(memory_flash, any_blob, golden::six_joints, blob_size, store_state); }, times);
+  measure("load_newest", "-", "memory", as_it_is,
+          [] { status = load_newest(memory_flash, any_blob, buffer, store_state); }, times);
+  if (status != Status::ok) std::printf("the store does not load\n");
+}
+
 }  // namespace
 
 int main() {
@@ -131,4 +180,5 @@ int main() {
   measure_kinematics<float>();
   measure_tick<double>();
   measure_tick<float>();
+  measure_blob();
 }
