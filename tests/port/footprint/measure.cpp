@@ -13,6 +13,7 @@
 #include "mdhcal/kinematics.hpp"
 #include "mdhcal/port/store.hpp"
 #include "mdhcal/self_test.hpp"
+#include "mdhcal/solutions.hpp"
 
 namespace {
 
@@ -52,6 +53,8 @@ struct State {
   static inline Frame<Real> frames[max_joints + 2];
   static inline TickOptions<Real> options;
   static inline TickReport<Real> report;
+  static inline SolutionOptions<Real> solution_options;
+  static inline Solutions<Real> solutions;
   static inline Status status;
 };
 
@@ -125,6 +128,32 @@ void measure_kinematics() {
   }
 }
 
+// From nowhere: regular poses and near-singular ones by turns, the posture anywhere.
+template <class Real>
+void measure_solutions() {
+  using S = State<Real>;
+  const char* precision = std::is_same_v<Real, double> ? "double" : "float";
+  constexpr int count = 100;
+  S::solution_options = default_solution_options(S::arm);
+  Random random(3);
+  double q_rad[6];
+  bool second = false;
+  const auto prepare = [&](int i) {
+    if (!second) {
+      joints(i % 2 == 0 ? Set::regular : Set::near_singular, random, q_rad);
+      set_joints<Real>(q_rad);
+      S::status = forward(S::arm, S::q, S::pose);
+      joints(Set::regular, random, q_rad);
+    }
+    second = !second;
+    set_joints<Real>(q_rad);
+  };
+  measure("find_solutions", precision, "mixed", prepare,
+          [] { S::status = find_solutions(S::arm, S::solution_options, S::pose, S::q, S::solutions); }, count);
+  measure("cold_start", precision, "mixed", prepare,
+          [] { S::status = cold_start(S::arm, S::solution_options, S::pose, S::q); }, count);
+}
+
 Model model;
 std::uint8_t buffer[blob_size];
 StoreState store_state;
@@ -180,5 +209,9 @@ int main() {
   measure_kinematics<float>();
   measure_tick<double>();
   measure_tick<float>();
+#if (__ARM_FP & 8) != 0  // in software it is a thousand million instructions a call
+  measure_solutions<double>();
+#endif
+  measure_solutions<float>();
   measure_blob();
 }
