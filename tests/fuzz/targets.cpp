@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: MIT
+#include "tests/fuzz/targets.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <memory>
+#include <string>
+
+#include "mdhcal/arm.hpp"
+#include "mdhcal/crc32.hpp"
+#include "offline/error.hpp"
+#include "offline/measure/dataset.hpp"
+#include "offline/output/blob_writer.hpp"
+#include "tests/fuzz/blob_invariants.hpp"
+
+namespace mdhcal::fuzz {
+
+namespace {
+
+using offline::InputError;
+using offline::Refusal;
+
+[[noreturn]] void stop(const char* what) {
+  std::fprintf(stderr, "broken: %s\n", what);
+  std::abort();
+}
+
+void decode_once(const std::uint8_t* bytes, std::size_t size) {
+  const auto model = std::make_unique<Model>();
+  const auto before = std::make_unique<Model>();
+  std::memset(static_cast<void*>(model.get()), 0x5A, sizeof(Model));
+  std::memset(static_cast<void*>(before.get()), 0x5A, sizeof(Model));
+  if (decode(bytes, size, DecodeOptions{}, *model) != Status::ok) {
+    if (std::memcmp(model.get(), before.get(), sizeof(Model)) != 0) stop("untouched when refused");
+    return;
+  }
+  if (const char* broken = broken_invariant(bytes, *model, true)) stop(broken);
+}
+
+bool same_bits(const Geometry& a, const Geometry& b) { return std::memcmp(&a, &b, sizeof a) == 0; }
+
+}  // namespace
+
+void blob_target(const std::uint8_t* data, std::size_t size) {
+  decode_once(data, size);
+  // In half of the inputs; which half hangs on the bytes, so that an input always does the same.
+  if ((crc32(data, size) & 1U) != 0U) return;
+  const auto bytes = std::make_unique<std::uint8_t[]>(blob_size);
+  std::copy_n(data, std::min(size, blob_size), bytes.get());
+  const std::uint32_t crc = crc32(bytes.get(), blob_layout::crc);
+  for (std::size_t k = 0; k < 4; ++k) bytes[blob_layout::crc + k] = static_cast<std::uint8_t>(crc >> (8 * k));
+  decode_once(bytes.get(), blob_size);
+}
+
+void robot_target(const std::uint8_t* data, std::size_t size) {
+  offline::Robot robot;
+  try {
+    robot = offline::parse_robot(std::string(data, data + size), "fuzz.toml");
+  } catch (const InputError&) {
+    return;
+  }
+  if (check(robot.geometry) != Status::ok) stop("a robot that was read is valid");
+  const offline::Robot again = offline::parse_robot(offline::write_robot(robot), "again.toml");
+  if (!same_bits(robot.geometry, again.geometry)) stop("a robot that was written reads back");
+  try {
+    (void)offline::make_blob(robot, offline::Provenance{});
+  } catch (const InputError&) {
+    return;
+  } catch (const Refusal&) {
+    return;
+  }
+}
+
+void dataset_target(const std::uint8_t* data, std::size_t size) {
+  static const offline::Robot robot = [] {
+    offline::Robot six;
+    six.geometry.joint_count = 6;
+    for (std::size_t i = 0; i < 6; ++i) six.geometry.joint[i].sign = 1;
+    six.geometry.last_T_flange.quaternion[0] = 1.0;
+    return six;
+  }();
+  try {
+    const offline::Dataset set = offline::parse_dataset(std::string(data, data + size), "fuzz.csv", robot);
+    for (const offline::Measurement& row : set.rows) {
+      if (row.group >= set.groups.size() || row.target >= set.targets.size()) stop("indices of a data set are in range");
+      if (!std::all_of(row.q.begin(), row.q.end(), [](double q) { return std::isfinite(q); }) ||
+          !std::all_of(row.position_m.begin(), row.position_m.end(), [](double p) { return std::isfinite(p); })) {
+        stop("figures of a data set are finite");
+      }
+    }
+  } catch (const InputError&) {
+    return;
+  }
+}
+
+}  // namespace mdhcal::fuzz

@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: MIT
+// What the fuzzers feed. Each takes any bytes and returns; it aborts, with a line on stderr, if something that
+// docs/security.md promises does not hold. Under the sanitizers the rest is theirs to see.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+namespace mdhcal::fuzz {
+
+/// decode(): the bytes as they are, and cut or padded to a blob with its CRC repaired in half of the inputs.
+void blob_target(const std::uint8_t* data, std::size_t size);
+
+/// parse_robot(), then write_robot() and back, then make_blob().
+void robot_target(const std::uint8_t* data, std::size_t size);
+
+/// parse_dataset() for a six-joint robot.
+void dataset_target(const std::uint8_t* data, std::size_t size);
+
+}  // namespace mdhcal::fuzz
