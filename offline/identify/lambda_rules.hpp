@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Rules that choose lambda. Each looks at the singular values of the projected, prior-scaled, weighted problem and
-// nothing else, within [(s_r / 3)^2, s_1^2]; those with a judge call it.
+// nothing else, within [(s_r / 3)^2, s_1^2] (reml reaches lower); those with a judge call it.
 #pragma once
 
 #include <functional>
@@ -37,8 +37,9 @@ double l_curve_curvature(const SpectralProblem& problem, double lambda);
 /// Minimum of |r|^2 / (m - effective parameters)^2. (Golub, Heath, Wahba 1979)
 LambdaChoice generalised_cross_validation(const SpectralProblem& problem);
 
-/// Largest lambda whose residual is what noise of standard deviation `sigma` a row leaves: |r|^2 = sigma^2 times the
-/// rows less the effective parameters. (Morozov 1966, with the degrees of freedom that the fit takes)
+/// Largest lambda whose residual is no more than noise of standard deviation `sigma` a row: |r|^2 = m sigma^2 (Morozov
+/// 1966). The fit takes degrees of freedom, so with few rows a parameter it smooths too much; counting them makes the
+/// equation unsolvable in every other draw (docs/method.md).
 LambdaChoice discrepancy(const SpectralProblem& problem, double sigma);
 
 /// Greatest marginal likelihood of the data when noise and deviations are both normal, their variances unknown but for

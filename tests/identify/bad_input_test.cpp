@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: MIT
+// What must be recognised and named, and never yield a confident wrong result.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "offline/error.hpp"
+#include "offline/identify/rigid.hpp"
+#include "offline/simulate/family.hpp"
+#include "tests/identify/simulated.hpp"
+
+namespace {
+
+using namespace mdhcal;
+using namespace mdhcal::offline;
+using namespace mdhcal::tests;
+
+Simulation arm() { return simulate(family_robot("three-parallel"), arm_options(11)); }
+
+template <class Error>
+std::string said(const Robot& robot, const Dataset& data, const CalibrationOptions& options = {}) {
+  try {
+    (void)calibrate(robot, data, options);
+  } catch (const Error& e) {
+    return e.what();
+  } catch (const std::exception& e) {
+    return std::string("another error: ") + e.what();
+  }
+  return "no error";
+}
+
+bool holds(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
+
+TEST(BadInput, AllPosesEqual) {
+  Simulation s = arm();
+  for (Measurement& m : s.train.rows) m.q = s.train.rows.front().q;
+  EXPECT_TRUE(holds(said<InputError>(s.nominal, s.train), "same joint readings"));
+}
+
+TEST(BadInput, AllMeasurementsOnePoint) {
+  Simulation s = arm();
+  for (Measurement& m : s.train.rows) m.position_m = {0, 0, 0};
+  EXPECT_TRUE(holds(said<InputError>(s.nominal, s.train), "same point"));
+}
+
+TEST(BadInput, OneOrientationThroughout) {
+  // Three parallel axes and a wrist that turns back: q4 keeps the sum.
+  Simulation s = arm();
+  for (Measurement& m : s.train.rows) {
+    m.q[0] = 0.3;
+    m.q[3] = 0.2 - m.q[1] - m.q[2];
+    m.q[4] = 0.7;
+    m.q[5] = -0.4;
+  }
+  EXPECT_TRUE(holds(said<Refusal>(s.nominal, s.train), "one orientation"));
+}
+
+TEST(BadInput, JointAnglesInTheWrongUnit) {
+  Simulation s = arm();
+  for (Measurement& m : s.train.rows) {
+    for (double& q : m.q) q *= 3.14159265358979323846 / 180.0;
+  }
+  EXPECT_TRUE(holds(said<Refusal>(s.nominal, s.train), "in radians but are read as degrees"));
+}
+
+TEST(BadInput, PositionsInTheWrongUnit) {
+  Simulation s = arm();
+  for (Measurement& m : s.train.rows) {
+    for (double& x : m.position_m) x *= 1e-3;
+  }
+  EXPECT_TRUE(holds(said<Refusal>(s.nominal, s.train), "in metres but are read as millimetres"));
+}
+
+TEST(BadInput, TwoJointsSwapped) {
+  Simulation s = arm();
+  for (Measurement& m : s.train.rows) std::swap(m.q[1], m.q[4]);
+  EXPECT_TRUE(holds(said<Refusal>(s.nominal, s.train), "joints 2 and 5 are swapped"));
+}
+
+TEST(BadInput, AJointCountedTheOtherWayRound) {
+  Simulation s = arm();
+  for (Measurement& m : s.train.rows) m.q[2] = -m.q[2];
+  EXPECT_TRUE(holds(said<Refusal>(s.nominal, s.train), "joint 3 counts the other way round"));
+}
+
+TEST(BadInput, TrackerMovedBetweenTwoSeries) {
+  for (double shift_m : {1e-3, 20e-3}) {
+    Simulation s = arm();
+    const Frame<double> move = rotation_about({1e-3, -2e-3, 0.5e-3}, {1.0, 0.0, 0.0});
+    for (std::size_t i = 30; i < s.train.rows.size(); ++i) {
+      Vector3& p = s.train.rows[i].position_m;
+      p = transform(move, p);
+      p[0] += shift_m;
+    }
+    EXPECT_TRUE(holds(said<Refusal>(s.nominal, s.train), "moved before row")) << shift_m;
+  }
+}
+
+TEST(BadInput, ReflectorOnTheLastAxis) {
+  Robot robot = family_robot("three-parallel");
+  robot.tool_p_m = Vector3{0.0, 0.0, 0.1};
+  const Simulation s = simulate(robot, arm_options(5));
+  Dataset data = s.train;
+  // Measured again with the target exactly on the axis of the true arm.
+  Estimate truth;
+  truth.geometry = s.truth.geometry;
+  truth.flange_p_m = {{0.0, 0.0, 0.1}};
+  const Model real(truth);
+  for (Measurement& m : data.rows) m.position_m = real.target_position(m.q.data(), 0);
+  const Calibration c = calibrate(s.nominal, data, {});
+  bool named = false;
+  for (const std::string& note : c.notes) named = named || holds(note, "from the axis of joint 6");
+  EXPECT_TRUE(named);
+  EXPECT_FALSE(c.identifiability.weak.empty());
+  for (const EstimatedParameter& p : c.parameters) {
+    EXPECT_TRUE(std::isfinite(p.deviation) && std::isfinite(p.standard_deviation)) << name(p.id);
+  }
+}
+
+TEST(BadInput, FewerMeasurementsThanBaseAndTargetUnknowns) {
+  Simulation s = arm();
+  s.train.rows.resize(2);
+  EXPECT_TRUE(holds(said<InputError>(s.nominal, s.train), "expected at least 9"));
+}
+
+TEST(BadInput, FewerMeasurementsThanUnknownsIsSaid) {
+  Simulation s = arm();
+  s.train.rows.resize(7);
+  const Calibration c = calibrate(s.nominal, s.train, {});
+  bool named = false;
+  for (const std::string& note : c.notes) named = named || holds(note, "fewer scalar measurements");
+  EXPECT_TRUE(named);
+}
+
+TEST(BadInput, HalfOfTheRowsGross) {
+  Simulation s = arm();
+  add_gross_errors(s.train, 0.45, 3);
+  EXPECT_TRUE(holds(said<Refusal>(s.nominal, s.train), "more than a third"));
+}
+
+TEST(BadInput, UnknownParameterNames) {
+  const Simulation s = arm();
+  CalibrationOptions options;
+  options.parameters.fix = {"a9"};
+  EXPECT_TRUE(holds(said<InputError>(s.nominal, s.train, options), "a9"));
+}
+
+}  // namespace
