@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: MIT
+// Choosing the poses to measure, and what to expect of them, before the tracker is set up.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "offline/identify/setup.hpp"
+#include "offline/plan/design.hpp"
+#include "offline/plan/reach.hpp"
+
+namespace mdhcal::offline {
+
+using Readings = std::array<double, max_joints>;
+
+struct PlanOptions {
+  std::size_t count = 30;                ///< poses to choose
+  Criterion criterion = Criterion::d;
+  std::size_t candidate_count = 2000;    ///< drawn if no candidates are given
+  std::uint64_t seed = 1;
+  Reach reach;
+  SetupOptions setup;                    ///< what will be fitted; setup.noise_mm is the tracker's
+};
+
+/// What is to be expected of one parameter.
+struct ExpectedParameter {
+  std::string name;
+  bool is_angle = false;
+  double prior_sd = 0;       ///< before measuring [rad] or [m]
+  double expected_sd = 0;    ///< after [rad] or [m]
+};
+
+/// Expected length of the position error over the candidates [mm]: geometry, base and target, without the noise of a
+/// single measurement.
+struct ExpectedPosition {
+  double rms_mm = 0, p95_mm = 0, max_mm = 0;
+};
+
+struct Plan {
+  std::vector<Readings> poses;           ///< ordered so that each is near the one before
+  std::vector<ExpectedParameter> parameters;
+  ExpectedPosition expected;
+  ExpectedPosition random_median;        ///< median over 50 random sets of as many of the candidates
+  ExpectedPosition with_ten_more;        ///< if 10 further poses were chosen; equal to expected if there are none left
+  std::size_t candidates = 0, unreachable = 0;
+};
+
+/// Chooses poses for a robot. `candidates` may be empty: then random reachable configurations are drawn. Those given are
+/// kept only if reachable. The same arguments give the same plan.
+/// Throws InputError if fewer candidates than poses are left, or if none in a hundred draws is reachable.
+Plan make_plan(const Robot& robot, const PlanOptions& options, const std::vector<Readings>& candidates = {});
+
+/// The experiment that measuring `candidates` on the nominal robot would be.
+Experiment experiment_of(const Robot& robot, const SetupOptions& options, const std::vector<Readings>& candidates);
+
+}  // namespace mdhcal::offline

@@ -1,0 +1,285 @@
+// SPDX-License-Identifier: MIT
+#include "offline/report/figures.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "offline/identify/lambda_rules.hpp"
+#include "offline/identify/reduction.hpp"
+#include "offline/identify/rigid.hpp"
+#include "offline/simulate/simulate.hpp"
+
+namespace mdhcal::offline {
+
+namespace {
+
+// Told apart in grey print as well (Okabe & Ito's vermilion and blue differ in lightness).
+constexpr const char* before_colour = "rgb '#d55e00'";
+constexpr const char* after_colour = "rgb '#0072b2'";
+
+double norm_mm(const Vector3& v) { return std::hypot(v[0], v[1], v[2]); }
+
+std::string text_of(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.7g", value);
+  return text;
+}
+
+// The rows that the headline figures are about: held out if there are any.
+std::vector<const RowResult*> judged(const Calibration& calibration) {
+  std::vector<const RowResult*> rows;
+  for (const RowResult& row : calibration.rows) {
+    if (row.test == calibration.test.has_value()) rows.push_back(&row);
+  }
+  return rows;
+}
+
+// Error norms in ascending order with the share of rows at or below each.
+std::vector<std::vector<double>> cumulative(std::vector<double> errors) {
+  std::sort(errors.begin(), errors.end());
+  std::vector<std::vector<double>> rows;
+  for (std::size_t i = 0; i < errors.size(); ++i) {
+    rows.push_back({errors[i], 100.0 * static_cast<double>(i + 1) / static_cast<double>(errors.size())});
+  }
+  return rows;
+}
+
+std::vector<std::vector<double>> histogram(const std::vector<double>& errors, double low, double high) {
+  constexpr std::size_t bins = 24;
+  std::vector<std::vector<double>> rows;
+  const double width = (high - low) / bins;
+  for (std::size_t b = 0; b < bins; ++b) rows.push_back({low + (static_cast<double>(b) + 0.5) * width, 0.0});
+  for (const double error : errors) {
+    const double at = std::clamp((error - low) / width, 0.0, bins - 1.0);
+    rows[static_cast<std::size_t>(at)][1] += 1;
+  }
+  return rows;
+}
+
+double nonzero(double value) { return std::max(value, 1e-6); }
+
+}  // namespace
+
+double before_norm_mm(const RowResult& row) { return norm_mm(row.before_mm); }
+double after_norm_mm(const RowResult& row) { return norm_mm(row.after_mm); }
+
+const Measurement& measurement(const Calibration& calibration, const RowResult& row) {
+  return (row.test ? calibration.testing : calibration.training).rows[row.row];
+}
+
+std::string row_name(const Calibration& calibration, const RowResult& row) {
+  const Dataset& data = row.test ? calibration.testing : calibration.training;
+  const Measurement& m = data.rows[row.row];
+  return data.targets.size() > 1 ? m.id + '/' + data.targets[m.target] : m.id;
+}
+
+std::optional<LambdaPicture> lambda_picture(const Calibration& calibration) {
+  if (calibration.layout.geometry.empty() || calibration.training_rows.empty()) return std::nullopt;
+  Selection selection;
+  selection.rows = calibration.training_rows;
+  selection.robust_weight = calibration.robust_weight;
+  const Model model(calibration.estimate);
+  Triangle triangle = sum_of(
+      linearise(model, calibration.training, selection, calibration.layout, CalibrationOptions{}.noise_mm.value_or(0.02)));
+  const std::vector<double> x0 = deviation(calibration.estimate, calibration.layout);
+  LambdaPicture picture;
+  picture.problem = penalised_problem(
+      reduce_frames(triangle.matrix(), calibration.layout.frame_columns(), triangle.row_count()),
+      Eigen::Map<const Eigen::VectorXd>(x0.data(), static_cast<Eigen::Index>(x0.size())));
+  if (picture.problem.rank() == 0) return std::nullopt;
+  const auto add = [&](const std::string& rule, bool found, double lambda) {
+    if (!found || !(lambda > 0)) return;
+    picture.choices.push_back({rule, lambda, std::sqrt(picture.problem.residual_norm2(lambda)),
+                               std::sqrt(picture.problem.solution_norm2(lambda))});
+  };
+  add("chosen: " + calibration.lambda.rule, true, calibration.lambda.lambda);
+  const LambdaChoice corner = l_curve(picture.problem);
+  add("corner of the L-curve", corner.found, corner.lambda);
+  const LambdaChoice gcv = generalised_cross_validation(picture.problem);
+  add("generalised cross-validation", gcv.found, gcv.lambda);
+  const LambdaChoice likelihood = marginal_likelihood(picture.problem, 1.0);
+  add("marginal likelihood", likelihood.found, likelihood.lambda);
+  const LambdaChoice quasi = quasi_optimality(picture.problem);
+  add("quasi-optimality", quasi.found, quasi.lambda);
+  return picture;
+}
+
+PredictedAccuracy predicted_accuracy(const Calibration& calibration) {
+  PredictedAccuracy out;
+  if (calibration.covariance.size == 0) return out;
+  const Model model(calibration.estimate);
+  const Frame<double> base_T_tracker = inverse(calibration.estimate.tracker_T_base);
+  Random random(1);
+  std::vector<double> sorted;
+  for (int k = 0; k < 600; ++k) {
+    const auto q = random_readings(calibration.robot.geometry, random);
+    const double sd =
+        predicted_position_sd_mm(model, calibration.layout, calibration.covariance, q.data(), 0);
+    const Vector3 p = apply(base_T_tracker, model.target_position(q.data(), 0));
+    out.points.push_back({1e3 * p[0], 1e3 * p[1], 1e3 * p[2], sd});
+    sorted.push_back(sd);
+  }
+  std::sort(sorted.begin(), sorted.end());
+  out.median_mm = sorted[sorted.size() / 2];
+  out.p95_mm = sorted[sorted.size() * 95 / 100];
+  out.max_mm = sorted.back();
+  return out;
+}
+
+Figure distribution_figure(const Calibration& calibration) {
+  std::vector<double> before, after;
+  for (const RowResult* row : judged(calibration)) {
+    before.push_back(nonzero(before_norm_mm(*row)));
+    after.push_back(nonzero(after_norm_mm(*row)));
+  }
+  const double high = after.empty() ? 1 : *std::max_element(after.begin(), after.end());
+  const auto bars = histogram(after, 0, nonzero(high));
+  Figure figure{"Histogram and cumulative curve of the position error", "", 720, 300};
+  figure.script = data_block("bars", bars) + data_block("before", cumulative(before)) +
+                  data_block("after", cumulative(after)) +
+                  "set multiplot layout 1,2\nset grid\nset style fill solid 0.6\nset boxwidth " +
+                  text_of(nonzero(high) / 24 * 0.92) +
+                  "\nset xlabel 'error after [mm]'\nset ylabel 'rows'\nset xrange [0:*]\nset yrange [0:*]\n"
+                  "plot $bars using 1:2 with boxes lc " + after_colour + " notitle\n"
+                  "set logscale x\nset xrange [*:*]\nset yrange [0:100]\nset xlabel 'error [mm]'\n"
+                  "set ylabel 'rows at or below [%]'\nset key bottom right\n"
+                  "plot $before using 1:2 with steps lw 2 lc " + before_colour + " title 'before', "
+                  "$after using 1:2 with steps lw 2 lc " + after_colour + " title 'after'\nunset multiplot";
+  return figure;
+}
+
+Figure per_pose_figure(const Calibration& calibration) {
+  std::vector<std::vector<double>> before, after, outliers;
+  double first_test = 0;
+  for (std::size_t i = 0; i < calibration.rows.size(); ++i) {
+    const RowResult& row = calibration.rows[i];
+    const auto at = static_cast<double>(i + 1);
+    before.push_back({at, nonzero(before_norm_mm(row))});
+    after.push_back({at, nonzero(after_norm_mm(row))});
+    if (row.outlier) outliers.push_back({at, nonzero(after_norm_mm(row))});
+    if (row.test && first_test <= 0) first_test = at - 0.5;
+  }
+  Figure figure{"Error of each row before and after", "", 720, 300};
+  figure.script = data_block("before", before) + data_block("after", after);
+  if (!outliers.empty()) figure.script += data_block("outliers", outliers);
+  figure.script += "set logscale y\nset grid\nset xlabel 'row'\nset ylabel 'error [mm]'\nset key outside top horizontal\n"
+                   "set xrange [0:" + text_of(static_cast<double>(calibration.rows.size()) + 1) + "]\n";
+  if (first_test > 1) {
+    figure.script += "set arrow from " + text_of(first_test) + ", graph 0 to " + text_of(first_test) +
+                     ", graph 1 nohead dt 2 lc rgb '#444444'\nset label 'held out' at " + text_of(first_test) +
+                     ", graph 0.96 offset 0.5,0\n";
+  }
+  figure.script += "plot $before with points pt 6 ps 0.6 lc " + std::string(before_colour) + " title 'before', "
+                   "$after with points pt 7 ps 0.5 lc " + after_colour + " title 'after'";
+  if (!outliers.empty()) figure.script += ", $outliers with points pt 6 ps 1.6 lw 1.5 lc rgb 'black' title 'outlier'";
+  return figure;
+}
+
+Figure axes_figure(const Calibration& calibration) {
+  std::vector<std::vector<double>> rows;
+  for (std::size_t i = 0; i < calibration.rows.size(); ++i) {
+    const RowResult& row = calibration.rows[i];
+    if (row.outlier) continue;
+    rows.push_back({static_cast<double>(i + 1), row.after_mm[0], row.after_mm[1], row.after_mm[2]});
+  }
+  if (rows.empty()) rows.push_back({0, 0, 0, 0});
+  Figure figure{"Residual along each axis of the measurement frame, outliers left out", "", 720, 360};
+  figure.script = data_block("r", rows) + "set multiplot layout 3,1\nset grid\nset tmargin 0.5\nset bmargin 2\n"
+                  "set lmargin 9\nset xzeroaxis\n";
+  const char* names[] = {"x", "y", "z"};
+  for (int k = 0; k < 3; ++k) {
+    figure.script += "set ylabel '" + std::string(names[k]) + " [mm]'\nplot $r using 1:" + std::to_string(k + 2) +
+                     " with points pt 7 ps 0.4 lc " + after_colour + " notitle\n";
+  }
+  figure.script += "unset multiplot";
+  return figure;
+}
+
+Figure vectors_figure(const Calibration& calibration) {
+  const Frame<double> base_T_tracker = inverse(calibration.estimate.tracker_T_base);
+  std::vector<std::vector<double>> rows;
+  double longest = 0, extent = 0;
+  Vector3 low{HUGE_VAL, HUGE_VAL, HUGE_VAL}, high{-HUGE_VAL, -HUGE_VAL, -HUGE_VAL};
+  for (const RowResult& row : calibration.rows) {
+    const Measurement& m = measurement(calibration, row);
+    if (row.outlier || (m.kind != MeasurementKind::position && m.kind != MeasurementKind::pose)) continue;
+    const Vector3 p = apply(base_T_tracker, m.position_m);
+    const Vector3 e = rotate(base_T_tracker, row.after_mm);
+    rows.push_back({1e3 * p[0], 1e3 * p[1], 1e3 * p[2], e[0], e[1], e[2], norm_mm(e)});
+    longest = std::max(longest, norm_mm(e));
+    for (std::size_t k = 0; k < 3; ++k) {
+      low[k] = std::min(low[k], 1e3 * p[k]);
+      high[k] = std::max(high[k], 1e3 * p[k]);
+    }
+  }
+  for (std::size_t k = 0; k < 3 && !rows.empty(); ++k) extent = std::max(extent, high[k] - low[k]);
+  if (rows.empty()) rows.push_back({0, 0, 0, 0, 0, 0, 0});
+  // The longest arrow takes an eighth of the workspace; the factor is a round number and stands in the caption.
+  double factor = longest > 0 && extent > 0 ? extent / 8 / longest : 1;
+  factor = std::pow(10, std::floor(std::log10(factor)));
+  Figure figure{"Error vectors after calibration, enlarged " + text_of(factor) + " times, in the robot's base frame", "", 720,
+                480};
+  figure.script = data_block("v", rows) + "f = " + text_of(factor) +
+                  "\nset xlabel 'x [mm]'\nset ylabel 'y [mm]'\nset zlabel 'z [mm]' rotate\nset grid\nset view 62,38\n"
+                  "set xyplane 0.05\nset ticslevel 0\nset cblabel 'error [mm]'\n"
+                  "set palette defined (0 '#440154', 0.5 '#21908c', 1 '#fde725')\n"
+                  "splot $v using 1:2:3:($4*f):($5*f):($6*f):7 with vectors head size graph 0.01,20 lw 1.2 lc palette notitle";
+  return figure;
+}
+
+Figure lambda_figure(const LambdaPicture& picture, const LambdaReport& chosen) {
+  std::vector<std::vector<double>> curve;
+  const double low = std::min(picture.problem.smallest_lambda(), chosen.lambda > 0 ? chosen.lambda : HUGE_VAL);
+  const double high = std::max(picture.problem.largest_lambda(), chosen.lambda);
+  for (int k = 0; k <= 120; ++k) {
+    const double lambda = low * std::pow(high / low, k / 120.0);
+    curve.push_back({std::sqrt(picture.problem.residual_norm2(lambda)), std::sqrt(picture.problem.solution_norm2(lambda))});
+  }
+  Figure figure{"L-curve with the choices of the rules", "", 720, 360};
+  figure.script = data_block("curve", curve);
+  std::string plots = "$curve with lines lw 2 lc rgb '#666666' title 'L-curve'";
+  for (std::size_t k = 0; k < picture.choices.size(); ++k) {
+    const RuleChoice& choice = picture.choices[k];
+    const std::string name = "c" + std::to_string(k);
+    figure.script += data_block(name, {{choice.residual_norm, choice.solution_norm}});
+    plots += ", $" + name + " with points pt " + std::to_string(k == 0 ? 7 : 4 + 2 * static_cast<int>(k)) + " ps " +
+             (k == 0 ? "1.4" : "1.5") + " lw 1.5 title '" + choice.rule + "'";
+  }
+  figure.script += "set logscale xy\nset grid\nset xlabel 'residual norm'\nset ylabel 'norm of the deviations [prior sd]'\n"
+                   "set key outside right\nplot " + plots;
+  return figure;
+}
+
+Figure spectrum_figure(const Calibration& calibration) {
+  const Spectrum& spectrum = calibration.identifiability.after;
+  std::vector<std::vector<double>> rows;
+  for (std::size_t k = 0; k < spectrum.singular_values.size(); ++k) {
+    rows.push_back({static_cast<double>(k + 1), std::max(spectrum.singular_values[k], 1e-16)});
+  }
+  if (rows.empty()) rows.push_back({1, 1});
+  const double smallest = std::max(rows.back()[1] / 3, 1e-17);
+  Figure figure{"Singular values of the column-scaled Jacobian, base and targets projected out", "", 720, 280};
+  figure.script = data_block("s", rows) + "set logscale y\nset grid\nset xlabel 'index'\nset ylabel 'singular value'\n"
+                  "set xrange [0:" + text_of(static_cast<double>(rows.size()) + 1) + "]\nset yrange [" + text_of(smallest) +
+                  ":*]\n";
+  if (spectrum.rank < rows.size()) {
+    const std::string at = text_of(static_cast<double>(spectrum.rank) + 0.5);
+    figure.script += "set arrow from " + at + ", graph 0 to " + at + ", graph 1 nohead dt 2\nset label 'cut' at " + at +
+                     ", graph 0.9 offset 0.5,0\n";
+  }
+  figure.script += "plot $s with impulses lw 3 lc " + std::string(after_colour) + " notitle, $s with points pt 7 ps 0.6 lc " +
+                   after_colour + " notitle";
+  return figure;
+}
+
+Figure accuracy_figure(const PredictedAccuracy& accuracy) {
+  Figure figure{"Predicted standard deviation of the position over the workspace, robot's base frame", "", 720, 460};
+  figure.script = data_block("p", accuracy.points) +
+                  "set xlabel 'x [mm]'\nset ylabel 'y [mm]'\nset zlabel 'z [mm]' rotate\nset grid\nset view 62,38\n"
+                  "set xyplane 0.05\nset cblabel 'standard deviation [mm]'\n"
+                  "set palette defined (0 '#440154', 0.5 '#21908c', 1 '#fde725')\n"
+                  "splot $p using 1:2:3:4 with points pt 7 ps 0.6 lc palette notitle";
+  return figure;
+}
+
+}  // namespace mdhcal::offline

@@ -1,0 +1,211 @@
+// SPDX-License-Identifier: MIT
+#include "offline/report/report.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <numbers>
+
+#include "offline/report/figures.hpp"
+#include "offline/report/html.hpp"
+#include "offline/robot/rotation.hpp"
+
+namespace mdhcal::offline {
+
+namespace {
+
+constexpr double degrees = 180 / std::numbers::pi;
+
+using Rows = std::vector<std::vector<std::string>>;
+
+std::string list(const std::vector<std::string>& items) {
+  if (items.empty()) return "";
+  std::string out = "<ul>\n";
+  for (const std::string& item : items) out += "<li>" + escaped(item) + "</li>\n";
+  return out + "</ul>\n";
+}
+
+std::string paragraph(const std::string& text) { return "<p>" + escaped(text) + "</p>\n"; }
+
+std::vector<std::string> figures_row(const std::string& label, const Statistics& s) {
+  return {escaped(label),      std::to_string(s.count), fixed(s.max, 4), fixed(s.mean, 4),
+          fixed(s.median, 4), fixed(s.sd, 4),          fixed(s.rms, 4), fixed(s.p95, 4)};
+}
+
+const std::vector<std::string> figures_header = {"position error [mm]", "rows", "max", "mean", "median", "SD", "RMS", "p95"};
+
+void add_split(Rows& rows, const std::string& label, const SplitFigures& split) {
+  rows.push_back(figures_row(label + ", before", split.before));
+  rows.push_back(figures_row(label + ", after", split.after));
+  if (!split.outliers.empty()) rows.push_back(figures_row(label + ", after, without outliers", split.after_good));
+}
+
+std::string accuracy_section(const Calibration& c) {
+  Rows rows{figures_header};
+  if (c.test) add_split(rows, "held out", *c.test);
+  add_split(rows, "training", c.train);
+  std::string text = table(rows);
+  text += paragraph(c.test ? "Held-out rows entered nothing but these figures. \"Before\" is the nominal geometry after the "
+                             "best fit of base and target on the training rows."
+                           : "There were no test rows: these are errors on the rows that were fitted, so they flatter. "
+                             "Measure some poses more and give them with --test.");
+  return text;
+}
+
+std::string parameter_section(const Calibration& c) {
+  Rows rows{{"parameter", "unit", "nominal", "corrected", "deviation", "standard deviation", "95 % interval of the deviation",
+             "from the measurements", ""}};
+  for (const EstimatedParameter& p : c.parameters) {
+    const bool angle = is_angle(p.id);
+    const double factor = angle ? degrees : 1e3;
+    rows.push_back({name(p.id), angle ? "deg" : "mm", fixed(p.nominal * factor, 4), fixed((p.nominal + p.deviation) * factor, 4),
+                    fixed(p.deviation * factor, 4), fixed(p.standard_deviation * factor, 4),
+                    fixed(p.low * factor, 4) + " &hellip; " + fixed(p.high * factor, 4), fixed(100 * p.resolution, 0) + " %",
+                    p.identifiable ? "" : "<span class=\"flag\">not identifiable from these poses</span>"});
+  }
+  std::string text = table(rows);
+  text += paragraph("Intervals cover the geometry: the noise of the measurements and the bias of regularization. Compliance, "
+                    "backlash and thermal drift are in no parameter; they stay in the residual.");
+  if (!c.identifiability.weak.empty()) {
+    Rows weak{{"weak or lost direction", "relative singular value", "advice"}};
+    for (const WeakDirection& direction : c.identifiability.weak) {
+      std::string members;
+      for (const std::string& member : direction.members) members += (members.empty() ? "" : ", ") + member;
+      char value[32];
+      std::snprintf(value, sizeof value, "%.2g", direction.relative_singular_value);
+      weak.push_back({escaped(members), value, escaped(direction.advice)});
+    }
+    text += table(weak, false);
+  }
+  return text;
+}
+
+std::string outlier_section(const Calibration& c) {
+  Rows rows{{"row", "set", "line of the file", "error before [mm]", "error after [mm]"}};
+  for (const RowResult& row : c.rows) {
+    if (!row.outlier) continue;
+    rows.push_back({escaped(row_name(c, row)), row.test ? "held out" : "training",
+                    std::to_string(measurement(c, row).line), fixed(before_norm_mm(row), 4), fixed(after_norm_mm(row), 4)});
+  }
+  const std::string threshold = fixed(c.outlier_threshold_mm, 4);
+  if (rows.size() == 1) return paragraph("No row is beyond the outlier threshold of " + threshold + " mm.");
+  return paragraph("Rows beyond the outlier threshold of " + threshold +
+                   " mm. They have no weight in the fit; look at them before you trust the rest.") +
+         table(rows);
+}
+
+std::string frames_section(const Calibration& c) {
+  Rows rows{{"", "x [mm]", "y [mm]", "z [mm]", "rx [deg]", "ry [deg]", "rz [deg]"}};
+  const Pose<double> base = pose_of(c.estimate.tracker_T_base);
+  const auto turn = rotation_vector_of({base.quaternion[0], base.quaternion[1], base.quaternion[2], base.quaternion[3]});
+  rows.push_back({c.layout.base ? "tracker_T_base, fitted" : "tracker_T_base, given", fixed(1e3 * base.position_m[0], 4),
+                  fixed(1e3 * base.position_m[1], 4), fixed(1e3 * base.position_m[2], 4), fixed(degrees * turn[0], 5),
+                  fixed(degrees * turn[1], 5), fixed(degrees * turn[2], 5)});
+  const auto sd = [&](std::size_t column) {
+    return column < c.covariance.size ? std::sqrt(std::max(0.0, c.covariance.at(column, column))) : std::nan("");
+  };
+  if (c.layout.base && c.covariance.size > 0) {
+    rows.push_back({"standard deviation", fixed(sd(3), 4), fixed(sd(4), 4), fixed(sd(5), 4), fixed(1e-3 * degrees * sd(0), 5),
+                    fixed(1e-3 * degrees * sd(1), 5), fixed(1e-3 * degrees * sd(2), 5)});
+  }
+  for (std::size_t t = 0; t < c.estimate.flange_p_m.size(); ++t) {
+    const Vector3& p = c.estimate.flange_p_m[t];
+    const std::string word = t < c.training.targets.size() && !c.training.targets[t].empty() ? " " + c.training.targets[t] : "";
+    rows.push_back({"target" + escaped(word) + (c.layout.target ? ", fitted" : ", given"), fixed(1e3 * p[0], 4),
+                    fixed(1e3 * p[1], 4), fixed(1e3 * p[2], 4), "", "", ""});
+    if (c.layout.target && c.covariance.size > 0) {
+      const std::size_t column = c.layout.base_columns() + 3 * t;
+      rows.push_back({"standard deviation", fixed(sd(column), 4), fixed(sd(column + 1), 4), fixed(sd(column + 2), 4), "", "", ""});
+    }
+  }
+  return table(rows) + paragraph("The base in the frame of the measurements, its rotation as a rotation vector (standard "
+                                 "deviations about the middle of the measured points); target points in the flange frame.");
+}
+
+std::string method_section(const std::vector<MethodFigures>& methods) {
+  Rows rows{{"method", "max [mm]", "mean [mm]", "SD [mm]", "RMS [mm]", "p95 [mm]", ""}};
+  for (const MethodFigures& m : methods) {
+    rows.push_back({escaped(m.method), fixed(m.figures.max, 4), fixed(m.figures.mean, 4), fixed(m.figures.sd, 4),
+                    fixed(m.figures.rms, 4), fixed(m.figures.p95, 4), escaped(m.note)});
+  }
+  return table(rows);
+}
+
+std::string figure_block(const std::string& svg, const std::string& caption) {
+  return "<figure>\n" + svg + "\n<figcaption>" + escaped(caption) + "</figcaption>\n</figure>\n";
+}
+
+std::string scientific(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.4g", value);
+  return text;
+}
+
+}  // namespace
+
+std::string report_html(const Calibration& c, const ReportContext& context) {
+  const auto lambda = lambda_picture(c);
+  const PredictedAccuracy accuracy = predicted_accuracy(c);
+
+  std::vector<Figure> figures{distribution_figure(c), per_pose_figure(c), axes_figure(c), vectors_figure(c),
+                              spectrum_figure(c)};
+  if (!accuracy.points.empty()) figures.push_back(accuracy_figure(accuracy));
+  if (lambda) figures.push_back(lambda_figure(*lambda, c.lambda));
+  std::string reason;
+  const std::vector<std::string> drawn = draw(figures, reason);
+  const auto shown = [&](std::size_t k) { return drawn.empty() ? "" : figure_block(drawn[k], figures[k].title + "."); };
+  const std::size_t lambda_index = figures.size() - 1;
+
+  const std::string title = "Calibration of " + (c.robot.name.empty() ? "a robot" : c.robot.name);
+  std::string body = "<h1>" + escaped(title) + "</h1>\n";
+  body += "<p class=\"verdict\">" + escaped(c.verdict) + "</p>\n";
+  if (drawn.empty()) body += paragraph("This report has no figures: " + reason + ". Everything else is complete.");
+  body += section("Accuracy", accuracy_section(c) + shown(0) + shown(1));
+  body += section("Where the errors are", shown(2) + shown(3) + outlier_section(c));
+  body += section("Parameters", parameter_section(c) + shown(4) +
+                                    paragraph("Rank " + std::to_string(c.identifiability.after.rank) + " of " +
+                                              std::to_string(c.identifiability.after.singular_values.size()) +
+                                              ", condition " + scientific(c.identifiability.after.condition) + ", with the penalty " +
+                                              scientific(c.identifiability.condition_regularized) + '.'));
+  if (!accuracy.points.empty()) {
+    body += section("Predicted accuracy over the workspace",
+                    paragraph("Standard deviation of the corrected position at 600 random configurations within the joint "
+                              "limits: median " + fixed(accuracy.median_mm, 4) + " mm, 95 % below " + fixed(accuracy.p95_mm, 4) +
+                              " mm, largest " + fixed(accuracy.max_mm, 4) + " mm.") + shown(5));
+  }
+  std::string choice = paragraph("Lambda " + scientific(c.lambda.lambda) + " by the rule \"" + c.lambda.rule + "\". " + c.lambda.note);
+  if (lambda) {
+    Rows rows{{"rule", "lambda", "residual norm", "norm of the deviations"}};
+    for (const RuleChoice& each : lambda->choices) {
+      rows.push_back({escaped(each.rule), scientific(each.lambda), scientific(each.residual_norm), scientific(each.solution_norm)});
+    }
+    choice += table(rows) + shown(lambda_index);
+    if (std::none_of(lambda->choices.begin(), lambda->choices.end(),
+                     [](const RuleChoice& each) { return each.rule.starts_with("corner"); })) {
+      choice += paragraph("The L-curve has no corner here.");
+    }
+  }
+  body += section("Regularization", choice);
+  body += section("Registration and target", frames_section(c));
+  if (!context.methods.empty()) body += section("Methods compared", method_section(context.methods));
+  Rows dependences{{"quantity", "rows", "mean residual x, y, z [mm]", "correlation with the error"}};
+  for (const Dependence& d : c.dependences) {
+    dependences.push_back({escaped(d.quantity), std::to_string(d.count),
+                           fixed(d.mean_residual_mm[0], 4) + ", " + fixed(d.mean_residual_mm[1], 4) + ", " +
+                               fixed(d.mean_residual_mm[2], 4),
+                           fixed(d.correlation, 2)});
+  }
+  if (dependences.size() > 1) body += section("What the residual goes with", table(dependences));
+  std::vector<std::string> remarks = c.notes;
+  remarks.insert(remarks.end(), c.decisions.begin(), c.decisions.end());
+  body += section("Notes and decisions", list(remarks));
+  Rows provenance{{"", ""}};
+  provenance.push_back({"method", escaped(c.method)});
+  for (const auto& [label, value] : context.provenance) {
+    provenance.push_back({escaped(label), "<code>" + escaped(value) + "</code>"});
+  }
+  body += section("Provenance", table(provenance, false));
+  return page(title, body);
+}
+
+}  // namespace mdhcal::offline

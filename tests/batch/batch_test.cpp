@@ -1,0 +1,219 @@
+// SPDX-License-Identifier: MIT
+#include "offline/batch/batch.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <csignal>
+#include <filesystem>
+#include <fstream>
+#include <map>
+
+#include <fcntl.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include "offline/error.hpp"
+#include "offline/simulate/family.hpp"
+#include "offline/simulate/measurement_text.hpp"
+#include "offline/simulate/simulate.hpp"
+#include "tests/support/program.hpp"
+
+namespace {
+
+namespace fs = std::filesystem;
+using namespace mdhcal::offline;
+using namespace mdhcal::tests;
+
+// `count` simulated robots under folder/in and their manifest; one of them cannot be calibrated if `bad`.
+void write_fleet(const TemporaryFolder& folder, std::size_t count, std::size_t poses, bool bad) {
+  fs::create_directory(folder / "in");
+  std::string manifest = "name,robot,measurements,test\n";
+  for (std::size_t i = 0; i < count; ++i) {
+    SimulationOptions options;
+    options.seed = 1000 + i;
+    options.configurations = poses;
+    options.test_configurations = 10;
+    const Simulation s = simulate(family_robot(family_names()[i % 2]), options);
+    const std::string n = std::to_string(i + 1);
+    write_bytes(folder / ("in/r" + n + ".toml"), write_robot(s.nominal));
+    write_bytes(folder / ("in/m" + n + ".csv"), bad && i == 1 ? "q1,x\n1,2\n" : measurement_text(s.train, s.nominal));
+    write_bytes(folder / ("in/t" + n + ".csv"), measurement_text(s.test, s.nominal));
+    manifest += "unit " + n + ",r" + n + ".toml,m" + n + ".csv,t" + n + ".csv\n";
+  }
+  write_bytes(folder / "in/fleet.csv", manifest);
+}
+
+// Every file below a folder with its bytes.
+std::map<std::string, std::string> contents(const std::string& folder) {
+  std::map<std::string, std::string> files;
+  if (!fs::exists(folder)) return files;
+  for (const auto& entry : fs::recursive_directory_iterator(folder)) {
+    if (entry.is_regular_file()) files[fs::relative(entry.path(), folder).string()] = read_bytes(entry.path().string());
+  }
+  return files;
+}
+
+TEST(Batch, CalibratesAllAndSummarizesThem) {
+  const TemporaryFolder folder;
+  write_fleet(folder, 4, 30, true);
+  const auto run = run_mdhcal({"batch", folder / "in/fleet.csv", "-o", folder / "out", "-j", "2"});
+  EXPECT_EQ(run.exit_code, 1) << run.err;  // one was refused
+  EXPECT_EQ(run.out, "");
+  EXPECT_NE(run.err.find("unit 2: "), std::string::npos) << run.err;
+  const std::vector<std::string> names{"summary.csv", "summary.html", "unit 1", "unit 3", "unit 4"};
+  EXPECT_EQ(names_in(folder / "out"), names);
+  const std::string csv = read_bytes(folder / "out/summary.csv");
+  EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 5);
+  EXPECT_NE(csv.find("\nunit 1,done,30,"), std::string::npos) << csv;
+  EXPECT_NE(csv.find("\nunit 2,refused,"), std::string::npos) << csv;
+  // The unit is what calibrate makes, without a report.
+  const auto alone = run_mdhcal({"calibrate", folder / "in/r3.toml", folder / "in/m3.csv", "--test", folder / "in/t3.csv",
+                                 "-o", folder / "alone"});
+  ASSERT_EQ(alone.exit_code, 0) << alone.err;
+  auto expected = contents(folder / "alone");
+  expected.erase("report.html");
+  EXPECT_EQ(contents(folder / "out/unit 3"), expected);
+}
+
+TEST(Batch, SlicesMakeTheSameFleetAndWhatIsDoneStays) {
+  const TemporaryFolder folder;
+  write_fleet(folder, 5, 25, false);
+  ASSERT_EQ(run_mdhcal({"batch", folder / "in/fleet.csv", "-o", folder / "whole"}).exit_code, 0);
+  for (const char* slice : {"1/3", "2/3", "3/3"}) {
+    ASSERT_EQ(run_mdhcal({"batch", folder / "in/fleet.csv", "-o", folder / "parts", "--slice", slice}).exit_code, 0);
+  }
+  const auto again = run_mdhcal({"batch", folder / "in/fleet.csv", "-o", folder / "parts"});
+  EXPECT_NE(again.err.find("0 calibrated, 5 were done before"), std::string::npos) << again.err;
+  auto parts = contents(folder / "parts");
+  for (const char* n : {"1", "2", "3"}) {
+    EXPECT_EQ(parts.erase("summary-" + std::string(n) + "-of-3.csv"), 1u);
+    EXPECT_EQ(parts.erase("summary-" + std::string(n) + "-of-3.html"), 1u);
+  }
+  EXPECT_EQ(parts, contents(folder / "whole"));
+}
+
+// The example of the help, under GNU parallel.
+TEST(Batch, RunsUnderGnuParallel) {
+  const TemporaryFolder folder;
+  write_fleet(folder, 4, 25, false);
+  ASSERT_EQ(run_mdhcal({"batch", folder / "in/fleet.csv", "-o", folder / "whole"}).exit_code, 0);
+  const auto run = run_program("parallel", {"--will-cite", "-j2", MDHCAL_PROGRAM, "batch", folder / "in/fleet.csv", "-o",
+                                            folder / "parts", "--slice", "{}/4", ":::", "1", "2", "3", "4"});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  ASSERT_EQ(run_mdhcal({"batch", folder / "in/fleet.csv", "-o", folder / "parts"}).exit_code, 0);
+  EXPECT_EQ(read_bytes(folder / "parts/summary.csv"), read_bytes(folder / "whole/summary.csv"));
+}
+
+// Starts the program and kills it after that many microseconds. Returns true if it was still running.
+bool killed(const std::vector<std::string>& arguments, useconds_t after_us) {
+  std::vector<char*> argv;
+  std::string program = MDHCAL_PROGRAM;
+  argv.push_back(program.data());
+  std::vector<std::string> copy = arguments;
+  for (std::string& a : copy) argv.push_back(a.data());
+  argv.push_back(nullptr);
+  const pid_t child = fork();
+  if (child == 0) {
+    setenv("SOURCE_DATE_EPOCH", "1700000000", 1);
+    const int null = open("/dev/null", O_WRONLY);
+    dup2(null, STDERR_FILENO);
+    execv(argv[0], argv.data());
+    _exit(127);
+  }
+  usleep(after_us);
+  kill(child, SIGKILL);
+  int status = 0;
+  waitpid(child, &status, 0);
+  return WIFSIGNALED(status);
+}
+
+double seconds_of(const std::vector<std::string>& arguments) {
+  const auto start = std::chrono::steady_clock::now();
+  EXPECT_EQ(run_mdhcal(arguments, {.environment = {{"SOURCE_DATE_EPOCH", "1700000000"}}}).exit_code, 0);
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+TEST(Kill, CalibrateLeavesNothingOrEverything) {
+  const TemporaryFolder folder;
+  write_fleet(folder, 1, 60, false);
+  const std::vector<std::string> arguments{"calibrate", folder / "in/r1.toml", folder / "in/m1.csv", "-o", folder / "out/x"};
+  const double seconds = seconds_of(arguments);
+  const auto whole = contents(folder / "out/x");
+  ASSERT_EQ(whole.size(), 5u);
+  Random random(1);
+  int cut = 0, nothing = 0;
+  for (int k = 0; k < 50; ++k) {
+    if (k % 2 == 0) fs::remove_all(folder / "out");  // every other time an earlier result is exchanged
+    cut += killed(arguments, static_cast<useconds_t>(1e6 * random.uniform(0, 1.1 * seconds)));
+    if (!fs::exists(folder / "out/x")) {
+      ++nothing;
+      continue;
+    }
+    EXPECT_EQ(contents(folder / "out/x"), whole) << k;
+  }
+  EXPECT_GT(cut, 20);
+  EXPECT_GT(nothing, 5);
+  seconds_of(arguments);
+  EXPECT_EQ(names_in(folder / "out"), std::vector<std::string>{"x"});  // what the killed ones left is gone
+}
+
+TEST(Kill, ABatchIsContinuedWithoutLosingOrRedoingARobot) {
+  const TemporaryFolder folder;
+  write_fleet(folder, 6, 40, false);
+  const auto arguments = [&](const std::string& out) {
+    return std::vector<std::string>{"batch", folder / "in/fleet.csv", "-o", folder / out, "-j", "2"};
+  };
+  const double seconds = seconds_of(arguments("whole"));
+  const auto whole = contents(folder / "whole");
+  ASSERT_EQ(whole.size(), 6u * 4 + 2);
+  Random random(2);
+  int cut = 0;
+  std::map<std::string, fs::file_time_type> born;
+  for (int k = 0; k < 50; ++k) {
+    if (k % 5 == 0) {
+      fs::remove_all(folder / "out");
+      born.clear();
+    }
+    cut += killed(arguments("out"), static_cast<useconds_t>(1e6 * random.uniform(0, 0.9 * seconds)));
+    if (!fs::exists(folder / "out")) continue;
+    for (const std::string& name : names_in(folder / "out")) {
+      if (name[0] == '.' || name.starts_with("summary")) continue;
+      const auto unit = contents(folder / ("out/" + name));
+      EXPECT_EQ(unit.size(), 4u) << name;
+      for (const auto& [file, bytes] : unit) EXPECT_EQ(bytes, whole.at(name + '/' + file));
+      const auto time = fs::last_write_time(folder / ("out/" + name + "/result.json"));
+      EXPECT_EQ(born.emplace(name, time).first->second, time) << name << " was done twice";
+    }
+  }
+  EXPECT_GT(cut, 20);
+  ASSERT_EQ(run_mdhcal(arguments("out"), {.environment = {{"SOURCE_DATE_EPOCH", "1700000000"}}}).exit_code, 0);
+  EXPECT_EQ(contents(folder / "out"), whole);
+}
+
+TEST(Manifest, MalformedOnesAreRefusedWithTheirSpot) {
+  const TemporaryFolder folder;
+  const auto message = [&](const std::string& text) -> std::string {
+    write_bytes(folder / "m.csv", text);
+    try {
+      (void)read_manifest(folder / "m.csv");
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "accepted";
+  };
+  EXPECT_NE(message("name,robot\na,b\n").find("measurements"), std::string::npos);
+  EXPECT_NE(message("name,robot,measurements\na,r,m\na,r,m\n").find("m.csv:3:1"), std::string::npos);
+  EXPECT_NE(message("name,robot,measurements\n../a,r,m\n").find("m.csv:2:1"), std::string::npos);
+  EXPECT_NE(message("name,robot,measurements\n.a,r,m\n").find("m.csv:2:1"), std::string::npos);
+  EXPECT_NE(message("name,robot,measurements\na,,m\n").find("m.csv:2:3"), std::string::npos);
+  EXPECT_NE(message("name,robot,measurements\n").find("no rows"), std::string::npos);
+  for (const char* slice : {"0/3", "4/3", "1", "1/", "a/b", "1/2x"}) {
+    write_bytes(folder / "m.csv", "name,robot,measurements\na,r,m\n");
+    EXPECT_EQ(run_mdhcal({"batch", folder / "m.csv", "-o", folder / "out", "--slice", slice}).exit_code, 2) << slice;
+  }
+  EXPECT_FALSE(fs::exists(folder / "out"));
+}
+
+}  // namespace
