@@ -4,31 +4,12 @@
 #include "offline/cli/calibration_arguments.hpp"
 #include "offline/cli/messages.hpp"
 #include "offline/output/folder.hpp"
-#include "offline/output/residuals_csv.hpp"
 #include "offline/output/result_files.hpp"
-#include "offline/output/result_json.hpp"
+#include "offline/report/write_result.hpp"
 
 namespace mdhcal::offline {
 
 namespace {
-
-std::string escaped(const std::string& text) {
-  std::string out;
-  for (char c : text) {
-    if (c == '<') out += "&lt;";
-    else if (c == '&') out += "&amp;";
-    else out += c;
-  }
-  return out;
-}
-
-std::string plain_report(const Calibration& c) {
-  std::string out = "<!DOCTYPE html><html lang=\"en\"><meta charset=\"utf-8\"><title>" + escaped(c.robot.name) +
-                    "</title><h1>Calibration of " + escaped(c.robot.name) + "</h1><p>" + escaped(c.verdict) +
-                    "</p><pre>" + escaped(figures_text(c)) + "</pre><ul>";
-  for (const std::string& note : c.notes) out += "<li>" + escaped(note) + "</li>";
-  return out + "</ul></html>\n";
-}
 
 void run(const CalibrationArguments& arguments) {
   const CalibrationOptions options = calibration_options(arguments);
@@ -40,12 +21,7 @@ void run(const CalibrationArguments& arguments) {
   OutputFolder folder(arguments.directory, result_names);
   const Calibration c = calibrate(robot, data, options, arguments.test.empty() ? nullptr : &test);
 
-  const Blob blob = calibration_blob(c, date);
-  folder.write("calibration.blob", {reinterpret_cast<const char*>(blob.data()), blob.size()});
-  folder.write("corrected.toml", corrected_toml(c));
-  folder.write("result.json", result_json(c));
-  folder.write("residuals.csv", residuals_csv(c));
-  folder.write("report.html", plain_report(c));
+  write_result(folder, c, date, true);
   folder.commit();
 
   for (const std::string& note : data.notes) inform(note);

@@ -16,6 +16,8 @@ void add_diff(CLI::App& app);
 void add_export(CLI::App& app);
 void add_keygen(CLI::App& app);
 void add_sign(CLI::App& app);
+void add_plan(CLI::App& app);
+void add_batch(CLI::App& app);
 void add_simulate(CLI::App& app);
 void add_convert(CLI::App& app);
 
@@ -29,6 +31,8 @@ inline void add_commands(CLI::App& app) {
   add_export(app);
   add_keygen(app);
   add_sign(app);
+  add_plan(app);
+  add_batch(app);
   add_simulate(app);
   add_convert(app);
 }

@@ -102,7 +102,7 @@ void write_file(const fs::path& path, std::string_view bytes) {
 OutputFolder::OutputFolder(fs::path destination, std::vector<std::string> names) : names_(std::move(names)) {
   // A trailing slash or a link must not change which folder the new one is written beside.
   std::error_code error;
-  destination_ = fs::weakly_canonical(destination, error);
+  destination_ = fs::weakly_canonical(fs::absolute(destination), error);
   if (destination_.filename().empty()) destination_ = destination_.parent_path();
   if (error || destination_.filename().empty()) {
     throw InputError(destination.string() + " cannot be an output folder; expected the name of a folder to write.");

@@ -142,8 +142,11 @@ VectorXd expected_errors(const MatrixXd& rows, Index rows_per_pose, const Matrix
   return errors;
 }
 
-std::vector<std::size_t> exchange(const Experiment& experiment, Criterion criterion, std::size_t count,
+std::vector<std::size_t> exchange(const Experiment& stated, Criterion criterion, std::size_t count,
                                   const std::vector<std::size_t>& given) {
+  // Of the predictions only the sum of their variances counts, and that is in their triangle.
+  Experiment experiment = stated;
+  if (stated.targets.rows() > stated.targets.cols()) experiment.targets = upper_factor(stated.targets);
   std::vector<bool> taken(experiment.candidates(), false);
   std::vector<std::size_t> all = given;
   for (const std::size_t c : given) taken[c] = true;

@@ -4,9 +4,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "offline/identify/fit.hpp"
 #include "offline/identify/lambda_rules.hpp"
 #include "offline/identify/reduction.hpp"
 #include "offline/identify/rigid.hpp"
+#include "offline/robot/rotation.hpp"
 #include "offline/simulate/simulate.hpp"
 
 namespace mdhcal::offline {
@@ -108,14 +110,14 @@ PredictedAccuracy predicted_accuracy(const Calibration& calibration) {
   PredictedAccuracy out;
   if (calibration.covariance.size == 0) return out;
   const Model model(calibration.estimate);
-  const Frame<double> base_T_tracker = inverse(calibration.estimate.tracker_T_base);
+  const Frame<double> base_T_tracker = inverted(calibration.estimate.tracker_T_base);
   Random random(1);
   std::vector<double> sorted;
   for (int k = 0; k < 600; ++k) {
     const auto q = random_readings(calibration.robot.geometry, random);
     const double sd =
         predicted_position_sd_mm(model, calibration.layout, calibration.covariance, q.data(), 0);
-    const Vector3 p = apply(base_T_tracker, model.target_position(q.data(), 0));
+    const Vector3 p = transform(base_T_tracker, model.target_position(q.data(), 0));
     out.points.push_back({1e3 * p[0], 1e3 * p[1], 1e3 * p[2], sd});
     sorted.push_back(sd);
   }
@@ -183,7 +185,7 @@ Figure axes_figure(const Calibration& calibration) {
     rows.push_back({static_cast<double>(i + 1), row.after_mm[0], row.after_mm[1], row.after_mm[2]});
   }
   if (rows.empty()) rows.push_back({0, 0, 0, 0});
-  Figure figure{"Residual along each axis of the measurement frame, outliers left out", "", 720, 360};
+  Figure figure{"Residual along each axis of the measurement frame, outliers left out", "", 720, 480};
   figure.script = data_block("r", rows) + "set multiplot layout 3,1\nset grid\nset tmargin 0.5\nset bmargin 2\n"
                   "set lmargin 9\nset xzeroaxis\n";
   const char* names[] = {"x", "y", "z"};
@@ -196,14 +198,14 @@ Figure axes_figure(const Calibration& calibration) {
 }
 
 Figure vectors_figure(const Calibration& calibration) {
-  const Frame<double> base_T_tracker = inverse(calibration.estimate.tracker_T_base);
+  const Frame<double> base_T_tracker = inverted(calibration.estimate.tracker_T_base);
   std::vector<std::vector<double>> rows;
   double longest = 0, extent = 0;
   Vector3 low{HUGE_VAL, HUGE_VAL, HUGE_VAL}, high{-HUGE_VAL, -HUGE_VAL, -HUGE_VAL};
   for (const RowResult& row : calibration.rows) {
     const Measurement& m = measurement(calibration, row);
     if (row.outlier || (m.kind != MeasurementKind::position && m.kind != MeasurementKind::pose)) continue;
-    const Vector3 p = apply(base_T_tracker, m.position_m);
+    const Vector3 p = transform(base_T_tracker, m.position_m);
     const Vector3 e = rotate(base_T_tracker, row.after_mm);
     rows.push_back({1e3 * p[0], 1e3 * p[1], 1e3 * p[2], e[0], e[1], e[2], norm_mm(e)});
     longest = std::max(longest, norm_mm(e));
@@ -220,8 +222,8 @@ Figure vectors_figure(const Calibration& calibration) {
   Figure figure{"Error vectors after calibration, enlarged " + text_of(factor) + " times, in the robot's base frame", "", 720,
                 480};
   figure.script = data_block("v", rows) + "f = " + text_of(factor) +
-                  "\nset xlabel 'x [mm]'\nset ylabel 'y [mm]'\nset zlabel 'z [mm]' rotate\nset grid\nset view 62,38\n"
-                  "set xyplane 0.05\nset ticslevel 0\nset cblabel 'error [mm]'\n"
+                  "\nset xlabel 'x [mm]'\nset ylabel 'y [mm]'\nset zlabel 'z [mm]' rotate\nset grid\nset view 62,38,1.35,1.2\n"
+                  "set xyplane 0.05\nset tics font ',9'\nset cblabel 'error [mm]'\n"
                   "set palette defined (0 '#440154', 0.5 '#21908c', 1 '#fde725')\n"
                   "splot $v using 1:2:3:($4*f):($5*f):($6*f):7 with vectors head size graph 0.01,20 lw 1.2 lc palette notitle";
   return figure;
@@ -275,8 +277,8 @@ Figure spectrum_figure(const Calibration& calibration) {
 Figure accuracy_figure(const PredictedAccuracy& accuracy) {
   Figure figure{"Predicted standard deviation of the position over the workspace, robot's base frame", "", 720, 460};
   figure.script = data_block("p", accuracy.points) +
-                  "set xlabel 'x [mm]'\nset ylabel 'y [mm]'\nset zlabel 'z [mm]' rotate\nset grid\nset view 62,38\n"
-                  "set xyplane 0.05\nset cblabel 'standard deviation [mm]'\n"
+                  "set xlabel 'x [mm]'\nset ylabel 'y [mm]'\nset zlabel 'z [mm]' rotate\nset grid\nset view 62,38,1.35,1.2\n"
+                  "set xyplane 0.05\nset tics font ',9'\nset cblabel 'standard deviation [mm]'\n"
                   "set palette defined (0 '#440154', 0.5 '#21908c', 1 '#fde725')\n"
                   "splot $p using 1:2:3:4 with points pt 7 ps 0.6 lc palette notitle";
   return figure;

@@ -18,7 +18,9 @@ h2 { font-size: 12.5pt; margin: 7mm 0 2mm; border-bottom: 0.3mm solid #888; brea
 .wide { overflow-x: auto; }
 table { border-collapse: collapse; margin: 2mm 0; font-size: 9pt; }
 th, td { border-bottom: 0.2mm solid #bbb; padding: 0.6mm 2mm; text-align: left; vertical-align: top; }
-table.numeric th:not(:first-child), table.numeric td:not(:first-child) { text-align: right; font-variant-numeric: tabular-nums; }
+table.numeric th:not(:first-child), table.numeric td:not(:first-child) { text-align: right; white-space: nowrap; font-variant-numeric: tabular-nums; }
+table.numeric th { white-space: normal !important; }
+table.numeric td:last-child { white-space: normal; }
 tr { break-inside: avoid; }
 thead { display: table-header-group; }
 figure { margin: 3mm 0; break-inside: avoid; }

@@ -48,6 +48,20 @@ TEST_F(Folder, AppearsWholeAtCommitAndNotBefore) {
   EXPECT_EQ(std::distance(fs::directory_iterator(top_ / "deep"), fs::directory_iterator()), 1);
 }
 
+TEST_F(Folder, ARelativeNameIsBesideTheWorkingFolder) {
+  const fs::path before = fs::current_path();
+  fs::current_path(top_);
+  {
+    OutputFolder folder("plain", names_);
+    folder.write("a.txt", "one");
+    folder.commit();
+  }
+  mdhcal::offline::write_file("b.txt", "two");
+  fs::current_path(before);
+  EXPECT_EQ(read(top_ / "plain" / "a.txt"), "one");
+  EXPECT_EQ(read(top_ / "b.txt"), "two");
+}
+
 TEST_F(Folder, AnEarlierResultIsExchangedAndAnAbandonedRunLeavesIt) {
   for (const char* text : {"one", "two"}) {
     OutputFolder folder(top_ / "result", names_);
