@@ -21,7 +21,7 @@ namespace {
 constexpr double degree_rad = std::numbers::pi / 180;
 
 struct Arguments {
-  std::string robot, candidates, output, criterion = "d", base = "fit", tool = "fit";
+  std::string robot, candidates, output, criterion = "position", base = "fit", tool = "fit";
   std::vector<double> tracker_mm, normal{0, 0, 1};
   std::vector<double> keep_out_mm;  // six numbers a box
   double cone_deg = 50, noise_mm = 0.02;

@@ -17,7 +17,7 @@ using Readings = std::array<double, max_joints>;
 
 struct PlanOptions {
   std::size_t count = 30;                ///< poses to choose
-  Criterion criterion = Criterion::d;
+  Criterion criterion = Criterion::position;
   std::size_t candidate_count = 2000;    ///< drawn if no candidates are given
   std::uint64_t seed = 1;
   Reach reach;

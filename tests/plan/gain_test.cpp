@@ -123,6 +123,8 @@ TEST_P(PlanGain, PlannedPosesBeatRandomOnes) {
   EXPECT_GE(g.exact, GetParam().least);
 }
 
-INSTANTIATE_TEST_SUITE_P(Sets, PlanGain, testing::Values(Case{20, Criterion::d, 0.15}, Case{50, Criterion::d, 0.06}));
+INSTANTIATE_TEST_SUITE_P(Sets, PlanGain,
+                         testing::Values(Case{20, Criterion::position, 0.15}, Case{50, Criterion::position, 0.06},
+                                         Case{20, Criterion::d, 0.15}));
 
 }  // namespace
