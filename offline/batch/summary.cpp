@@ -25,7 +25,7 @@ constexpr std::array<const char*, 6> figure_names{"train_mean_before_mm", "train
 std::string figure(const nlohmann::json& json, const char* set, const char* when, const char* key) {
   const nlohmann::json::json_pointer at("/" + std::string(set) + '/' + when + '/' + key);
   if (!json.contains(at) || !json[at].is_number()) return "";
-  return fixed(json[at].get<double>(), 6);
+  return number_cell(json[at].get<double>(), 6);
 }
 
 Line line_of(const BatchOutcome& outcome, const std::string& directory) {

@@ -47,7 +47,7 @@ std::string escaped(const std::string& text) {
   return out;
 }
 
-std::string fixed(double value, int digits) {
+std::string number_cell(double value, int digits) {
   if (!std::isfinite(value)) return "-";
   char text[64];
   std::snprintf(text, sizeof text, "%.*f", digits, value);

@@ -11,7 +11,7 @@ namespace mdhcal::offline {
 std::string escaped(const std::string& text);
 
 /// A number with `digits` decimals; "-" if it is not finite.
-std::string fixed(double value, int digits);
+std::string number_cell(double value, int digits);
 
 /// A table; the first row is the header. Cells are HTML. Columns from the second on are set right if `numeric`.
 std::string table(const std::vector<std::vector<std::string>>& rows, bool numeric = true);

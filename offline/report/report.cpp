@@ -28,8 +28,8 @@ std::string list(const std::vector<std::string>& items) {
 std::string paragraph(const std::string& text) { return "<p>" + escaped(text) + "</p>\n"; }
 
 std::vector<std::string> figures_row(const std::string& label, const Statistics& s) {
-  return {escaped(label),      std::to_string(s.count), fixed(s.max, 4), fixed(s.mean, 4),
-          fixed(s.median, 4), fixed(s.sd, 4),          fixed(s.rms, 4), fixed(s.p95, 4)};
+  return {escaped(label),      std::to_string(s.count), number_cell(s.max, 4), number_cell(s.mean, 4),
+          number_cell(s.median, 4), number_cell(s.sd, 4),          number_cell(s.rms, 4), number_cell(s.p95, 4)};
 }
 
 const std::vector<std::string> figures_header = {"position error [mm]", "rows", "max", "mean", "median", "SD", "RMS", "p95"};
@@ -58,9 +58,9 @@ std::string parameter_section(const Calibration& c) {
   for (const EstimatedParameter& p : c.parameters) {
     const bool angle = is_angle(p.id);
     const double factor = angle ? degrees : 1e3;
-    rows.push_back({name(p.id), angle ? "deg" : "mm", fixed(p.nominal * factor, 4), fixed((p.nominal + p.deviation) * factor, 4),
-                    fixed(p.deviation * factor, 4), fixed(p.standard_deviation * factor, 4),
-                    fixed(p.low * factor, 4) + " &hellip; " + fixed(p.high * factor, 4), fixed(100 * p.resolution, 0) + " %",
+    rows.push_back({name(p.id), angle ? "deg" : "mm", number_cell(p.nominal * factor, 4), number_cell((p.nominal + p.deviation) * factor, 4),
+                    number_cell(p.deviation * factor, 4), number_cell(p.standard_deviation * factor, 4),
+                    number_cell(p.low * factor, 4) + " &hellip; " + number_cell(p.high * factor, 4), number_cell(100 * p.resolution, 0) + " %",
                     p.identifiable ? "" : "<span class=\"flag\">not identifiable from these poses</span>"});
   }
   std::string text = table(rows);
@@ -85,9 +85,9 @@ std::string outlier_section(const Calibration& c) {
   for (const RowResult& row : c.rows) {
     if (!row.outlier) continue;
     rows.push_back({escaped(row_name(c, row)), row.test ? "held out" : "training",
-                    std::to_string(measurement(c, row).line), fixed(before_norm_mm(row), 4), fixed(after_norm_mm(row), 4)});
+                    std::to_string(measurement(c, row).line), number_cell(before_norm_mm(row), 4), number_cell(after_norm_mm(row), 4)});
   }
-  const std::string threshold = fixed(c.outlier_threshold_mm, 4);
+  const std::string threshold = number_cell(c.outlier_threshold_mm, 4);
   if (rows.size() == 1) return paragraph("No row is beyond the outlier threshold of " + threshold + " mm.");
   return paragraph("Rows beyond the outlier threshold of " + threshold +
                    " mm. They have no weight in the fit; look at them before you trust the rest.") +
@@ -98,24 +98,24 @@ std::string frames_section(const Calibration& c) {
   Rows rows{{"", "x [mm]", "y [mm]", "z [mm]", "rx [deg]", "ry [deg]", "rz [deg]"}};
   const Pose<double> base = pose_of(c.estimate.tracker_T_base);
   const auto turn = rotation_vector_of({base.quaternion[0], base.quaternion[1], base.quaternion[2], base.quaternion[3]});
-  rows.push_back({c.layout.base ? "tracker_T_base, fitted" : "tracker_T_base, given", fixed(1e3 * base.position_m[0], 4),
-                  fixed(1e3 * base.position_m[1], 4), fixed(1e3 * base.position_m[2], 4), fixed(degrees * turn[0], 5),
-                  fixed(degrees * turn[1], 5), fixed(degrees * turn[2], 5)});
+  rows.push_back({c.layout.base ? "tracker_T_base, fitted" : "tracker_T_base, given", number_cell(1e3 * base.position_m[0], 4),
+                  number_cell(1e3 * base.position_m[1], 4), number_cell(1e3 * base.position_m[2], 4), number_cell(degrees * turn[0], 5),
+                  number_cell(degrees * turn[1], 5), number_cell(degrees * turn[2], 5)});
   const auto sd = [&](std::size_t column) {
     return column < c.covariance.size ? std::sqrt(std::max(0.0, c.covariance.at(column, column))) : std::nan("");
   };
   if (c.layout.base && c.covariance.size > 0) {
-    rows.push_back({"standard deviation", fixed(sd(3), 4), fixed(sd(4), 4), fixed(sd(5), 4), fixed(1e-3 * degrees * sd(0), 5),
-                    fixed(1e-3 * degrees * sd(1), 5), fixed(1e-3 * degrees * sd(2), 5)});
+    rows.push_back({"standard deviation", number_cell(sd(3), 4), number_cell(sd(4), 4), number_cell(sd(5), 4), number_cell(1e-3 * degrees * sd(0), 5),
+                    number_cell(1e-3 * degrees * sd(1), 5), number_cell(1e-3 * degrees * sd(2), 5)});
   }
   for (std::size_t t = 0; t < c.estimate.flange_p_m.size(); ++t) {
     const Vector3& p = c.estimate.flange_p_m[t];
     const std::string word = t < c.training.targets.size() && !c.training.targets[t].empty() ? " " + c.training.targets[t] : "";
-    rows.push_back({"target" + escaped(word) + (c.layout.target ? ", fitted" : ", given"), fixed(1e3 * p[0], 4),
-                    fixed(1e3 * p[1], 4), fixed(1e3 * p[2], 4), "", "", ""});
+    rows.push_back({"target" + escaped(word) + (c.layout.target ? ", fitted" : ", given"), number_cell(1e3 * p[0], 4),
+                    number_cell(1e3 * p[1], 4), number_cell(1e3 * p[2], 4), "", "", ""});
     if (c.layout.target && c.covariance.size > 0) {
       const std::size_t column = c.layout.base_columns() + 3 * t;
-      rows.push_back({"standard deviation", fixed(sd(column), 4), fixed(sd(column + 1), 4), fixed(sd(column + 2), 4), "", "", ""});
+      rows.push_back({"standard deviation", number_cell(sd(column), 4), number_cell(sd(column + 1), 4), number_cell(sd(column + 2), 4), "", "", ""});
     }
   }
   return table(rows) + paragraph("The base in the frame of the measurements, its rotation as a rotation vector (standard "
@@ -125,8 +125,8 @@ std::string frames_section(const Calibration& c) {
 std::string method_section(const std::vector<MethodFigures>& methods) {
   Rows rows{{"method", "max [mm]", "mean [mm]", "SD [mm]", "RMS [mm]", "p95 [mm]", ""}};
   for (const MethodFigures& m : methods) {
-    rows.push_back({escaped(m.method), fixed(m.figures.max, 4), fixed(m.figures.mean, 4), fixed(m.figures.sd, 4),
-                    fixed(m.figures.rms, 4), fixed(m.figures.p95, 4), escaped(m.note)});
+    rows.push_back({escaped(m.method), number_cell(m.figures.max, 4), number_cell(m.figures.mean, 4), number_cell(m.figures.sd, 4),
+                    number_cell(m.figures.rms, 4), number_cell(m.figures.p95, 4), escaped(m.note)});
   }
   return table(rows);
 }
@@ -170,8 +170,8 @@ std::string report_html(const Calibration& c, const ReportContext& context) {
   if (!accuracy.points.empty()) {
     body += section("Predicted accuracy over the workspace",
                     paragraph("Standard deviation of the corrected position at 600 random configurations within the joint "
-                              "limits: median " + fixed(accuracy.median_mm, 4) + " mm, 95 % below " + fixed(accuracy.p95_mm, 4) +
-                              " mm, largest " + fixed(accuracy.max_mm, 4) + " mm.") + shown(5));
+                              "limits: median " + number_cell(accuracy.median_mm, 4) + " mm, 95 % below " + number_cell(accuracy.p95_mm, 4) +
+                              " mm, largest " + number_cell(accuracy.max_mm, 4) + " mm.") + shown(5));
   }
   std::string choice = paragraph("Lambda " + scientific(c.lambda.lambda) + " by the rule \"" + c.lambda.rule + "\". " + c.lambda.note);
   if (lambda) {
@@ -191,9 +191,9 @@ std::string report_html(const Calibration& c, const ReportContext& context) {
   Rows dependences{{"quantity", "rows", "mean residual x, y, z [mm]", "correlation with the error"}};
   for (const Dependence& d : c.dependences) {
     dependences.push_back({escaped(d.quantity), std::to_string(d.count),
-                           fixed(d.mean_residual_mm[0], 4) + ", " + fixed(d.mean_residual_mm[1], 4) + ", " +
-                               fixed(d.mean_residual_mm[2], 4),
-                           fixed(d.correlation, 2)});
+                           number_cell(d.mean_residual_mm[0], 4) + ", " + number_cell(d.mean_residual_mm[1], 4) + ", " +
+                               number_cell(d.mean_residual_mm[2], 4),
+                           number_cell(d.correlation, 2)});
   }
   if (dependences.size() > 1) body += section("What the residual goes with", table(dependences));
   std::vector<std::string> remarks = c.notes;

@@ -54,7 +54,7 @@ TEST(Report, HoldsEverySectionAndEveryFigure) {
   for (const std::string& outlier : sample().train.outliers) {
     EXPECT_NE(html.find("<td>" + outlier + "</td><td>training</td>"), std::string::npos) << outlier;
   }
-  EXPECT_NE(html.find(fixed(sample().test->after.mean, 4)), std::string::npos);
+  EXPECT_NE(html.find(number_cell(sample().test->after.mean, 4)), std::string::npos);
   EXPECT_EQ(html.find("<script"), std::string::npos);
   EXPECT_EQ(html.find(">nan"), std::string::npos);
 }
