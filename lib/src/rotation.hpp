@@ -4,12 +4,17 @@
 
 #include "mdhcal/arm.hpp"
 #include "real.hpp"
+#include "square_root.hpp"
 
 namespace mdhcal {
 
 static inline Real square_root(Real x) {
   if constexpr (sizeof(Real) == sizeof(double)) {
+#if defined(__arm__) && (!defined(__ARM_FP) || (__ARM_FP & 8) == 0)
+    return static_cast<Real>(integer_square_root(static_cast<double>(x)));
+#else
     return static_cast<Real>(__builtin_sqrt(static_cast<double>(x)));
+#endif
   } else {
     return static_cast<Real>(__builtin_sqrtf(static_cast<float>(x)));
   }

@@ -51,11 +51,11 @@ Status prepare(const std::uint8_t* bytes, std::size_t size, void* context) {
   if (target.model.geometry.joint_count != joint_count) return Status::blob_value;
   mdhcal::Geometry nominal = target.model.geometry;
   for (std::size_t i = 0; i < mdhcal::max_joints; ++i) nominal.link[i] = target.model.nominal[i];
-  status = mdhcal::make_arm(nominal, target.nominal);
-  if (status == Status::ok) status = mdhcal::make_arm(target.model.geometry, target.corrected);
+  status = mdhcal::make_compensator(nominal, target.model.geometry, target.compensator);
   if (status != Status::ok) return status;
-  target.options = mdhcal::default_tick_options(target.corrected);
-  status = mdhcal::self_test(target.model, target.corrected);
+  target.state = mdhcal::rest(target.compensator, true);
+  target.options = mdhcal::default_tick_options(target.compensator.corrected);
+  status = mdhcal::self_test(target.model, target.compensator.corrected);
   Line("self-test: ") << mdhcal::text(status);
   return status == Status::self_test_tolerance ? Status::ok : status;
 }

@@ -24,17 +24,16 @@ void path(std::uint32_t tick, double* q) {
 // 0 ... 1 with speed and acceleration zero at both ends.
 double smooth(double s) { return s * s * s * (10.0 + s * (6.0 * s - 15.0)); }
 
+// The joints that bring the arm as it is to where the path's joints were meant to bring it.
+Status correct(const Correction& correction, const double* path_q, double* q) {
+  return mdhcal::joints_to_joints(correction.compensator, correction.state, correction.options, path_q, q);
+}
+
 void copy(const double* from, double* to) {
   for (std::int32_t i = 0; i < joint_count; ++i) to[i] = from[i];
 }
 
 }  // namespace
-
-Status Motion::correct(const Correction& correction, const double* path_q, double* q) {
-  mdhcal::Pose<double> pose;
-  const Status status = mdhcal::forward(correction.nominal, path_q, pose);
-  return status == Status::ok ? mdhcal::tick(correction.corrected, correction.options, pose, q) : status;
-}
 
 bool Motion::begin_swap(const Correction& next) {
   copy(report_.path_q, next_q_);

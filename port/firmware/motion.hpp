@@ -5,16 +5,15 @@
 #include <cstdint>
 
 #include "mdhcal/blob.hpp"
-#include "mdhcal/inverse.hpp"
-#include "mdhcal/kinematics.hpp"
+#include "mdhcal/compensator.hpp"
 
 namespace firmware {
 
 /// A model made ready for the servo loop. Constant while the loop may hold its pointer.
 struct Correction {
   mdhcal::Model model;
-  mdhcal::Arm<double> nominal;    ///< what the path's joints are meant for
-  mdhcal::Arm<double> corrected;  ///< what the arm is
+  mdhcal::CompensatorModel<double> compensator;
+  mdhcal::CompensatorState<double> state;  ///< at rest on the corrected geometry
   mdhcal::TickOptions<double> options;
 };
 
@@ -62,7 +61,6 @@ class Motion {
 
  private:
   bool begin_swap(const Correction& next);
-  static mdhcal::Status correct(const Correction& correction, const double* path_q, double* q);
 
   std::atomic<bool> enabled_{false};
   std::atomic<const Correction*> requested_{nullptr};

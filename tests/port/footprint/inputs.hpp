@@ -26,24 +26,36 @@ class Random {
   std::uint64_t state_;
 };
 
-/// A six-joint arm with three parallel axes (li2022, Table 1), with errors of 1 mm and 0.1 degrees in every parameter.
-inline mdhcal::Geometry calibrated_arm() {
+/// A six-joint arm with three parallel axes (li2022, Table 1).
+inline mdhcal::Geometry nominal_arm() {
   constexpr double deg = 3.14159265358979323846 / 180.0;
   constexpr double table[6][3] = {{0, 0, 99.927},   {90, 0, 106.950}, {0, 428.052, 0},
                                   {0, 398.551, 0}, {-90, 0, 93.160}, {-90, 0, 81.910}};
-  Random random(20220822);
   mdhcal::Geometry geometry{};
   geometry.joint_count = 6;
   for (int i = 0; i < 6; ++i) {
-    mdhcal::Link& link = geometry.link[i];
-    link.alpha_rad = (table[i][0] + random.uniform(-0.1, 0.1)) * deg;
-    link.a_m = (table[i][1] + random.uniform(-1, 1)) * 1e-3;
-    link.d_m = (table[i][2] + random.uniform(-1, 1)) * 1e-3;
-    link.theta_rad = random.uniform(-0.1, 0.1) * deg;
-    link.beta_rad = i == 1 || i == 2 ? random.uniform(-0.1, 0.1) * deg : 0.0;
+    geometry.link[i].alpha_rad = table[i][0] * deg;
+    geometry.link[i].a_m = table[i][1] * 1e-3;
+    geometry.link[i].d_m = table[i][2] * 1e-3;
     geometry.joint[i].sign = 1;
   }
   geometry.last_T_flange.quaternion[0] = 1;
+  return geometry;
+}
+
+/// The same with errors of up to 1 mm and 0.1 degrees in every parameter.
+inline mdhcal::Geometry calibrated_arm() {
+  constexpr double tenth_deg = 3.14159265358979323846 / 1800.0;
+  Random random(20220822);
+  mdhcal::Geometry geometry = nominal_arm();
+  for (int i = 0; i < 6; ++i) {
+    mdhcal::Link& link = geometry.link[i];
+    link.alpha_rad += random.uniform(-tenth_deg, tenth_deg);
+    link.a_m += random.uniform(-1e-3, 1e-3);
+    link.d_m += random.uniform(-1e-3, 1e-3);
+    link.theta_rad = random.uniform(-tenth_deg, tenth_deg);
+    link.beta_rad = i == 1 || i == 2 ? random.uniform(-tenth_deg, tenth_deg) : 0.0;
+  }
   return geometry;
 }
 

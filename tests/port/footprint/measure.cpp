@@ -8,6 +8,7 @@
 #include "counter.hpp"
 #include "golden_blobs.hpp"
 #include "inputs.hpp"
+#include "mdhcal/compensator.hpp"
 #include "mdhcal/crc32.hpp"
 #include "mdhcal/inverse.hpp"
 #include "mdhcal/kinematics.hpp"
@@ -53,6 +54,11 @@ struct State {
   static inline Frame<Real> frames[max_joints + 2];
   static inline TickOptions<Real> options;
   static inline TickReport<Real> report;
+  static inline CompensatorModel<Real> compensator;
+  static inline CompensatorState<Real> ramp;
+  static inline Pose<Real> command;
+  static inline Real meant_q[max_joints];
+  static inline Real velocity[6], max_velocity[max_joints], joint_velocity[max_joints];
   static inline SolutionOptions<Real> solution_options;
   static inline Solutions<Real> solutions;
   static inline Status status;
@@ -126,6 +132,49 @@ void measure_kinematics() {
             [] { S::status = forward(S::arm, S::q, S::pose, S::jacobian); });
     measure("link_frames", precision, name, prepare, [] { S::status = link_frames(S::arm, S::q, S::frames); });
   }
+}
+
+// The three forms of the compensator in the middle of its ramp, where the arm between the models is made in every tick.
+template <class Real>
+void measure_compensator() {
+  using S = State<Real>;
+  const char* precision = std::is_same_v<Real, double> ? "double" : "float";
+  constexpr int count = sizeof(Real) == 8 && (__ARM_FP & 8) == 0 ? input_count / 10 : input_count;
+  S::status = make_compensator(nominal_arm(), geometry, S::compensator);
+  for (int i = 0; i < 6; ++i) {
+    S::velocity[i] = static_cast<Real>(i % 2 == 0 ? 0.1 : -0.2);
+    S::max_velocity[i] = 3;
+  }
+  Random random(4);
+  double q_rad[6], meant_rad[6];
+  bool second = false;
+  const auto prepare = [&](int) {
+    if (!second) {
+      joints(Set::regular, random, meant_rad);
+      for (int k = 0; k < 6; ++k) q_rad[k] = meant_rad[k] + random.uniform(-0.003, 0.003);
+    }
+    second = !second;
+    set_joints<Real>(meant_rad);
+    for (int k = 0; k < 6; ++k) S::meant_q[k] = S::q[k];
+    S::status = forward(S::arm, S::meant_q, S::pose);
+    set_joints<Real>(q_rad);
+  };
+  for (const bool ramping : {false, true}) {
+    S::ramp = rest(S::compensator, !ramping);
+    if (ramping) {
+      S::status = start_ramp(S::ramp, true, 1);
+      S::status = advance(S::ramp, static_cast<Real>(0.5));
+    }
+    const char* set = ramping ? "ramp" : "rest";
+    measure("pose_to_joints", precision, set, prepare,
+            [] { S::status = pose_to_joints(S::compensator, S::ramp, S::options, S::pose, S::q); }, count);
+    measure("joints_to_joints", precision, set, prepare,
+            [] { S::status = joints_to_joints(S::compensator, S::ramp, S::options, S::meant_q, S::q); }, count);
+    measure("pose_to_pose", precision, set, prepare,
+            [] { S::status = pose_to_pose(S::compensator, S::ramp, S::options, S::pose, S::q, S::command); }, count);
+  }
+  measure("joint_velocities", precision, "regular", prepare,
+          [] { S::status = joint_velocities(S::arm, S::q, S::velocity, S::max_velocity, S::joint_velocity); }, count);
 }
 
 // From nowhere: regular poses and near-singular ones by turns, the posture anywhere.
@@ -209,6 +258,8 @@ int main() {
   measure_kinematics<float>();
   measure_tick<double>();
   measure_tick<float>();
+  measure_compensator<double>();
+  measure_compensator<float>();
 #if (__ARM_FP & 8) != 0  // in software it is a thousand million instructions a call
   measure_solutions<double>();
 #endif

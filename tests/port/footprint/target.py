@@ -47,7 +47,8 @@ class Target:
         headers = [*ROOT.glob("lib/include/mdhcal/*.h*"), *ROOT.glob("port/include/mdhcal/port/*.hpp")]
         text = "\n".join(re.sub(r"//.*", "", header.read_text()) for header in headers)
         declared = set(re.findall(r"\b(\w+)\s*\(", text))
-        return [(m, n) for m, n in self.symbols() if re.sub(r"\(.*", "", n).split("::")[-1] in declared]
+        return [(m, n) for m, n in self.symbols()
+                if re.match(r"mdhcalf?_", m) or re.sub(r"\(.*", "", n).split("::")[-1] in declared]
 
     def link(self, output, roots, *options):
         """An image of what the roots reach and nothing else."""
