@@ -75,7 +75,7 @@ inline void rest_on_bounds(const TickState& state, const Real* q, std::uint32_t 
 
 /// The least damping, to within a quarter of a decade, that lets the step fit, applied; what still sticks out is
 /// scaled back. Returns the damping.
-inline Real fit_step(const TickState& state, Real trust, const Real* q, const SingularBasis& basis, const Directions& directions,
+[[gnu::noinline]] Real fit_step(const TickState& state, Real trust, const Real* q, const SingularBasis& basis, const Directions& directions,
                      Real damping, Real* step) {
   joint_step(state, basis, directions, damping, step);
   Real ratio = fill(state, trust, q, step);
@@ -107,7 +107,7 @@ inline Real fit_step(const TickState& state, Real trust, const Real* q, const Si
 inline Real clamp(Real x, Real low, Real high) { return x < low ? low : (x > high ? high : x); }
 
 /// Adds motion in the null space of the task towards the posture, as far as the bounds leave room.
-inline void add_posture(const TickState& state, const Real* q, const SingularBasis& basis, std::int32_t rank,
+[[gnu::noinline]] void add_posture(const TickState& state, const Real* q, const SingularBasis& basis, std::int32_t rank,
                         std::uint32_t free_mask, Real* step) {
   const std::int32_t joints = state.arm->joint_count;
   Real motion[max_joints] = {};
@@ -151,7 +151,7 @@ inline void split_masks(TickState& state, std::uint32_t resting) {
 /// The strong directions once more from where a step ended: takes back the error that its curvature left there
 /// (second-order correction, Fletcher 1982). Without it a long step along a weak direction would be refused for an
 /// error that the strong ones undo at once.
-inline void correct_step(const TickState& state, const SingularBasis& basis, const Directions& directions,
+[[gnu::noinline]] void correct_step(const TickState& state, const SingularBasis& basis, const Directions& directions,
                          Real damping, const Real* weighted, std::uint32_t free_mask, Real* trial) {
   Directions strong = directions;
   strong.count = directions.count > 0 ? directions.count - 1 : 0;
@@ -167,7 +167,7 @@ inline void correct_step(const TickState& state, const SingularBasis& basis, con
 
 /// How far one step may go: four times as far as the strong directions ask for. The weak one, whose errors are
 /// magnified, then stays near, and on this branch.
-inline Real strong_step(const TickState& state, const SingularBasis& basis, const Directions& directions) {
+[[gnu::noinline]] Real strong_step(const TickState& state, const SingularBasis& basis, const Directions& directions) {
   Directions strong = directions;
   strong.count = directions.count > 0 ? directions.count - 1 : 0;
   Real step[max_joints];
@@ -298,7 +298,7 @@ inline std::int32_t count_bits(std::uint32_t mask) {
 }
 
 /// Sets the masks and the smallest singular value at state.q.
-inline void inspect(TickState& state, Real rotation_weight, bool is_met) {
+[[gnu::noinline]] void inspect(TickState& state, Real rotation_weight, bool is_met) {
   const Arm<Real>& arm = *state.arm;
   const std::int32_t joints = arm.joint_count;
   const std::uint32_t all = (1U << static_cast<std::uint32_t>(joints)) - 1U;

@@ -16,14 +16,13 @@ struct Factors {
   Real scale[6];      ///< 2 / |v|^2 of each Householder vector
 };
 
-/// Factors the matrix in place. Returns a lower bound of its smallest singular value, 1 / |R^-1|_F, which is at most
-/// sqrt(6) below it; 0 if it is singular.
-inline Real factor(Factors& f) {
+/// Factors the matrix in place. Returns false if it is singular.
+inline bool factor(Factors& f) {
   for (int k = 0; k < 6; ++k) {
     Real* v = f.column[k];
     Real square = 0;
     for (int i = k; i < 6; ++i) square += v[i] * v[i];
-    if (!(square > Real{0})) return 0;
+    if (!(square > Real{0})) return false;
     const Real norm = v[k] > Real{0} ? -square_root(square) : square_root(square);
     f.diagonal[k] = norm;
     // |v - norm e_k|^2 / 2 = norm (norm - v_k)
@@ -37,6 +36,11 @@ inline Real factor(Factors& f) {
       for (int i = k; i < 6; ++i) c[i] -= sum * v[i];
     }
   }
+  return true;
+}
+
+/// A lower bound of the smallest singular value, 1 / |R^-1|_F, which is at most sqrt(6) below it.
+inline Real singular_bound(const Factors& f) {
   Real frobenius = 0;
   for (int k = 0; k < 6; ++k) {
     // Column k of R^-1 by back substitution.

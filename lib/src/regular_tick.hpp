@@ -15,13 +15,20 @@ constexpr Real regular_bound = Real(0.004);
 constexpr Real regular_step = Real(0.3);
 
 /// The unit-free Jacobian by reading, factored.
-inline Real factor_jacobian(const TickState& state, Jacobian<Real>& jacobian, Factors& factors) {
+inline bool factor_jacobian(const TickState& state, Jacobian<Real>& jacobian, Factors& factors) {
   to_readings(*state.arm, jacobian);
   const Real per_length = Real{1} / state.length_m;
   for (std::int32_t j = 0; j < 6; ++j) {
-    const Real unit = joint_unit(state, j);
-    for (int k = 0; k < 3; ++k) factors.column[j][k] = jacobian.column[j][k] * (per_length * unit);
-    for (int k = 3; k < 6; ++k) factors.column[j][k] = jacobian.column[j][k] * unit;
+    const Real* from = jacobian.column[j];
+    Real* to = factors.column[j];
+    if (((state.arm->prismatic_mask >> static_cast<std::uint32_t>(j)) & 1U) != 0U) {
+      // A slide moves by lengths of the arm; through a coupling it may turn as well.
+      for (int k = 0; k < 3; ++k) to[k] = from[k];
+      for (int k = 3; k < 6; ++k) to[k] = from[k] * state.length_m;
+    } else {
+      for (int k = 0; k < 3; ++k) to[k] = from[k] * per_length;
+      for (int k = 3; k < 6; ++k) to[k] = from[k];
+    }
   }
   return factor(factors);
 }
@@ -50,7 +57,9 @@ inline Real factor_jacobian(const TickState& state, Jacobian<Real>& jacobian, Fa
       evaluate(*state.arm, q, frame, jacobian);
       pose_error(state.target, frame, Task::pose, error);
       if (round == 0 || !met(state, error)) {
-        bound = factor_jacobian(state, jacobian, factors);
+        if (!factor_jacobian(state, jacobian, factors)) return false;
+        // The steps are bounded by what the first one was, so one look is enough.
+        if (round == 0) bound = singular_bound(factors);
         if (!(bound > regular_bound)) return false;
       }
     } else {

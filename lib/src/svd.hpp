@@ -30,7 +30,7 @@ inline void rotate(Real* a, Real* b, std::int32_t length, Real cosine, Real sine
 
 /// One-sided Jacobi rotations (Hestenes 1958; Demmel, Veselic 1992: small singular values come out with relative
 /// accuracy). At most `sweeps` sweeps; a matrix of this size has converged after five or six.
-inline void decompose(SingularBasis& basis, std::int32_t columns) {
+[[gnu::noinline]] void decompose(SingularBasis& basis, std::int32_t columns) {
   constexpr Real epsilon = sizeof(Real) == sizeof(double) ? Real(1e-15) : Real(3e-7);
   constexpr int sweeps = 12;
   for (std::int32_t i = 0; i < columns; ++i) {

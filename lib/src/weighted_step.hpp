@@ -92,7 +92,7 @@ constexpr Real untracked_below = Real(0.01);
 /// Lets the weakest direction rest if the strong ones take the arm towards its singularity. Following the pose there
 /// as far as the limits go would leave the joints far from where they are needed on the other side; at rest the
 /// error stays that of the miss, and is caught up on leaving.
-inline void decide_to_rest(const TickState& state, const Jacobian<Real>& coordinates, const Real* z,
+[[gnu::noinline]] void decide_to_rest(const TickState& state, const Jacobian<Real>& coordinates, const Real* z,
                            Real rotation_weight, const SingularBasis& basis, const Real* u, Directions& directions) {
   const std::int32_t joints = state.arm->joint_count;
   const std::int32_t weakest = directions.count - 1;
@@ -118,7 +118,7 @@ inline void decide_to_rest(const TickState& state, const Jacobian<Real>& coordin
 /// Prepares the step for the weighted error. Along the weakest direction u the error behaves as s t + h t^2 / 2 with
 /// h = u . acceleration; its root nearest to zero stays on this side of the fold, where the slope s + h t vanishes.
 /// If the target is beyond the fold, the step ends short of it: a tenth of the way, or at the slope `margin`.
-inline void plan_step(const TickState& state, const Jacobian<Real>& coordinates, const Real* z, Real rotation_weight,
+[[gnu::noinline]] void plan_step(const TickState& state, const Jacobian<Real>& coordinates, const Real* z, Real rotation_weight,
                       Real margin, Real least_curvature, const SingularBasis& basis, std::int32_t rank,
                       const Real* error, Directions& directions) {
   directions.count = rank;
