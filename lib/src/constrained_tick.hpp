@@ -339,13 +339,16 @@ inline Status classify(const TickState& state, const Attempt& result) {
   Real last[max_joints];
   for (std::int32_t j = 0; j < joints; ++j) last[j] = state.q[j];
   const std::int32_t most = state.options->max_iterations;
-  const std::int32_t half = (most + 1) / 2;
-  Attempt result = attempt(state, Real{1}, Real{0}, fold_curvature, Real(0.5), 8, half, posture);
-  if (!result.met && result.held && state.error.position_m < Real(1e-4) * state.length_m &&
-      state.error.rotation_rad < Real(1e-4)) {
-    // Next to a cusp, where two folds meet, the model of one fold denies solutions that are there.
+  // The first attempt and the second leave evaluations for what comes after them.
+  const std::int32_t first = (3 * most + 7) / 8;
+  const std::int32_t second = (5 * most + 7) / 8;
+  Attempt result = attempt(state, Real{1}, Real{0}, fold_curvature, Real(0.5), 8, first, posture);
+  if (!result.met && state.error.position_m < Real(1e-3) * state.length_m && state.error.rotation_rad < Real(1e-3)) {
+    // Nearly met. Next to a cusp, where two folds meet, the model of one fold denies solutions that are there; elsewhere
+    // another balance of the errors finds the way that this one blocked.
     for (std::int32_t j = 0; j < joints; ++j) state.q[j] = last[j];
-    result = attempt(state, Real{1}, Real{0}, Real(1e30), Real(0.1), 8, half, posture);
+    result = result.held ? attempt(state, Real{1}, Real{0}, Real(1e30), Real(0.1), 8, second, posture)
+                         : attempt(state, Real(0.01), Real{0}, fold_curvature, Real(1e-3), 8, second, posture);
   }
   if (!result.met) {
     // Only to pass a singularity is the orientation given up for the position. At the border of the workspace that

@@ -110,7 +110,7 @@ TickOptions<Real> default_tick_options(const Arm<Real>& arm) noexcept {
   for (std::int32_t j = 0; j < arm.joint_count; ++j) options.max_step[j] = largest;
   options.position_weight = 1;
   options.rotation_weight = Real(0.001);
-  options.max_iterations = 24;
+  options.max_iterations = 32;
   options.task = Task::pose;
   return options;
 }

@@ -141,9 +141,9 @@ std::uint64_t golden_hash(int operations) {
 /// arithmetic_id (mdhcal/self_test.hpp) and only with it.
 inline constexpr int golden_operations = 100000;
 inline constexpr int golden_short = 1000;
-inline constexpr std::uint64_t golden_double = 0x2bea840365ede1bbULL;
-inline constexpr std::uint64_t golden_float = 0xa300e200823f1c46ULL;
-inline constexpr std::uint64_t golden_double_short = 0x13ba1ab5f98d34bdULL;
-inline constexpr std::uint64_t golden_float_short = 0xcf84ca4f046d1ef0ULL;
+inline constexpr std::uint64_t golden_double = 0xb237e5a7cb4f557fULL;
+inline constexpr std::uint64_t golden_float = 0x693dc89b51a75b41ULL;
+inline constexpr std::uint64_t golden_double_short = 0x925163aa98697aafULL;
+inline constexpr std::uint64_t golden_float_short = 0xedec027472ea54ddULL;
 
 }  // namespace mdhcal::test

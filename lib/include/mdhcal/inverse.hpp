@@ -41,7 +41,7 @@ struct TickReport {
   std::uint32_t limit_mask;     ///< bit i: joint i rests on a joint limit, or is outside it
 };
 
-/// Tolerances 1e-10 m and rad (float 5e-6), no step limit, position weighted 100 times over rotation, 24 iterations,
+/// Tolerances 1e-10 m and rad (float 5e-6), no step limit, position weighted 1000 times over rotation, 32 iterations,
 /// the whole pose, no posture.
 TickOptions<double> default_tick_options(const Arm<double>& arm) noexcept;
 TickOptions<float> default_tick_options(const Arm<float>& arm) noexcept;
