@@ -11,6 +11,7 @@
 #include "offline/robot/convention.hpp"
 #include "offline/robot/robot.hpp"
 #include "offline/robot/rotation.hpp"
+#include "offline/robot/toml_text.hpp"
 #include "offline/robot/units.hpp"
 
 namespace mdhcal::offline {
@@ -40,6 +41,7 @@ class Reader {
       throw InputError(path, 1 + std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(nul), '\n'), 0,
                        "Found a zero byte; expected a robot file (TOML text).");
     }
+    refuse_stray_characters(text, path);
     try {
       root_ = toml::parse(text, path);
     } catch (const toml::parse_error& error) {

@@ -30,6 +30,7 @@ void replay(const std::string& corpus, void (*target)(const std::uint8_t*, std::
 }
 
 TEST(Replay, Blob) { replay("blob", blob_target, 500); }
+TEST(Replay, Loader) { replay("blob", loader_target, 100); }
 TEST(Replay, Robot) { replay("robot", robot_target, 200); }
 TEST(Replay, Dataset) { replay("dataset", dataset_target, 200); }
 

@@ -9,6 +9,7 @@
 #include <memory>
 #include <string>
 
+#include "mdhcal.h"
 #include "mdhcal/arm.hpp"
 #include "mdhcal/crc32.hpp"
 #include "offline/error.hpp"
@@ -40,19 +41,56 @@ void decode_once(const std::uint8_t* bytes, std::size_t size) {
   if (const char* broken = broken_invariant(bytes, *model, true)) stop(broken);
 }
 
-bool same_bits(const Geometry& a, const Geometry& b) { return std::memcmp(&a, &b, sizeof a) == 0; }
-
-}  // namespace
-
-void blob_target(const std::uint8_t* data, std::size_t size) {
-  decode_once(data, size);
-  // In half of the inputs; which half hangs on the bytes, so that an input always does the same.
+// `use` on the bytes, and in half of the inputs on a blob of them with its CRC repaired. Which half hangs on the bytes, so
+// that an input always does the same.
+template <class Use>
+void with_repaired(const std::uint8_t* data, std::size_t size, Use use) {
+  use(data, size);
   if ((crc32(data, size) & 1U) != 0U) return;
   const auto bytes = std::make_unique<std::uint8_t[]>(blob_size);
   std::copy_n(data, std::min(size, blob_size), bytes.get());
   const std::uint32_t crc = crc32(bytes.get(), blob_layout::crc);
   for (std::size_t k = 0; k < 4; ++k) bytes[blob_layout::crc + k] = static_cast<std::uint8_t>(crc >> (8 * k));
-  decode_once(bytes.get(), blob_size);
+  use(bytes.get(), blob_size);
+}
+
+template <class CModel, class CPose, class Real, class Load, class Count, class Forward>
+void load_once(Load load, Count count, Forward forward, const std::uint8_t* bytes, std::size_t size) {
+  const auto model = std::make_unique<CModel>();
+  const auto before = std::make_unique<CModel>();
+  std::memset(model.get(), 0x5A, sizeof(CModel));
+  std::memset(before.get(), 0x5A, sizeof(CModel));
+  const auto decoded = std::make_unique<Model>();
+  const auto expected = static_cast<std::int32_t>(decode(bytes, size, DecodeOptions{}, *decoded));
+  const std::int32_t status = load(model.get(), sizeof(CModel), MDHCAL_ABI_VERSION, bytes, size, nullptr);
+  if (expected != MDHCAL_OK && status != expected) stop("the C loader refuses as decode() does");
+  if (status != MDHCAL_OK && status != MDHCAL_SELF_TEST_TOLERANCE) {
+    if (std::memcmp(model.get(), before.get(), sizeof(CModel)) != 0) stop("a C model is untouched when refused");
+    return;
+  }
+  if (count(model.get()) != decoded->geometry.joint_count) stop("a C model has the blob's joints");
+  const Real q[max_joints] = {};
+  CPose pose{};
+  for (const std::int32_t which : {MDHCAL_NOMINAL, MDHCAL_CORRECTED}) {
+    if (forward(model.get(), which, q, &pose, nullptr) != MDHCAL_OK ||
+        !std::all_of(pose.position_m, pose.position_m + 3, [](Real p) { return std::isfinite(p); })) {
+      stop("a C model gives finite poses");
+    }
+  }
+}
+
+bool same_bits(const Geometry& a, const Geometry& b) { return std::memcmp(&a, &b, sizeof a) == 0; }
+
+}  // namespace
+
+void blob_target(const std::uint8_t* data, std::size_t size) { with_repaired(data, size, decode_once); }
+
+void loader_target(const std::uint8_t* data, std::size_t size) {
+  if (data == nullptr) return;  // a null pointer is bad input in C, whatever its size
+  with_repaired(data, size, [](const std::uint8_t* bytes, std::size_t count) {
+    load_once<mdhcal_model, mdhcal_pose, double>(mdhcal_load, mdhcal_joint_count, mdhcal_forward, bytes, count);
+    load_once<mdhcalf_model, mdhcalf_pose, float>(mdhcalf_load, mdhcalf_joint_count, mdhcalf_forward, bytes, count);
+  });
 }
 
 void robot_target(const std::uint8_t* data, std::size_t size) {

@@ -11,6 +11,10 @@ namespace mdhcal::fuzz {
 /// decode(): the bytes as they are, and cut or padded to a blob with its CRC repaired in half of the inputs.
 void blob_target(const std::uint8_t* data, std::size_t size);
 
+/// The loader of the C header in both precisions, with the bytes likewise: it refuses what decode() refuses, with the same
+/// status and the model untouched, and what it loads gives finite poses.
+void loader_target(const std::uint8_t* data, std::size_t size);
+
 /// parse_robot(), then write_robot() and back, then make_blob().
 void robot_target(const std::uint8_t* data, std::size_t size);
 

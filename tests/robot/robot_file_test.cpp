@@ -199,6 +199,24 @@ TEST(RobotFile, WritingAndReadingGivesTheSameBits) {
   }
 }
 
+// toml++ is undefined on these (offline/robot/toml_text.hpp).
+TEST(RobotFile, CharactersOutsideAsciiBelongInQuotesAndComments) {
+  const std::string link = "[[link]]\nalpha = 0\na = 0\nd = 1\ntheta = 0\n";
+  for (const std::string good : {"# Ï ﻀ\n", "name = \"Ï \\\" Ï\"\n", "name = 'Ï'\n", "name = \"\"\"Ï\"Ï\"\"\"\" # Ï\n",
+                                 "name = '''Ï'Ï'''\n", "\xEF\xBB\xBF"}) {
+    EXPECT_NO_THROW(parse_robot(good + link, "r.toml")) << good;
+  }
+  for (const std::string bad : {"Ï", "Ï = 1", "name = Ï", "name = \"a\" Ï", "\xC2\xA0name = 'a'", "あ"}) {
+    EXPECT_THROW(parse_robot(link + bad + "\n", "r.toml"), InputError) << bad;
+  }
+  try {
+    parse_robot("name = 'a'\n  Ï", "r.toml");
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_EQ(std::string(error.what()).rfind("r.toml:2:3: ", 0), 0U) << error.what();
+  }
+}
+
 TEST(RobotFile, KeepsRoundNumbersRound) {
   const std::string written = write_robot(parse_robot("[[link]]\nalpha = 90\na = 425.0\nd = 89.159\ntheta = 30\n", "r.toml"));
   for (const char* line : {"alpha = 90.0\n", "a = 425.0\n", "d = 89.159\n", "theta = 30.0\n", "rxryrz = [0.0, 0.0, 0.0]\n"}) {
