@@ -139,7 +139,7 @@ template <class Real>
 void measure_compensator() {
   using S = State<Real>;
   const char* precision = std::is_same_v<Real, double> ? "double" : "float";
-  constexpr int count = sizeof(Real) == 8 && (__ARM_FP & 8) == 0 ? input_count / 10 : input_count;
+  constexpr int count = input_count / 10;
   S::status = make_compensator(nominal_arm(), geometry, S::compensator);
   for (int i = 0; i < 6; ++i) {
     S::velocity[i] = static_cast<Real>(i % 2 == 0 ? 0.1 : -0.2);
@@ -182,7 +182,7 @@ template <class Real>
 void measure_solutions() {
   using S = State<Real>;
   const char* precision = std::is_same_v<Real, double> ? "double" : "float";
-  constexpr int count = 100;
+  constexpr int count = input_count / 50;
   S::solution_options = default_solution_options(S::arm);
   Random random(3);
   double q_rad[6];
