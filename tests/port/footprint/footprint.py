@@ -46,6 +46,10 @@ def sizes(target):
         everything = target.link(image, [mangled for mangled, _ in functions])
         graph = CallGraph(target, image) if target.bare_metal else None
         whole = target.sections(everything)["code"]
+        one = {}
+        for real, other in (("double", r"<float>|^mdhcalf_"), ("float", r"<double>|^mdhcal_(?!text)")):
+            roots = [mangled for mangled, name in functions if not re.search(other, name)]
+            one[real] = target.sections(target.link(image, roots))["code"]
         for mangled, name in functions:
             code = target.sections(target.link(image, [mangled]))["code"]
             bound = "-"
@@ -53,7 +57,8 @@ def sizes(target):
                 depth, unknown = graph.bound(mangled)
                 bound = f"{depth}" + ("" if not unknown else " + " + ", ".join(unknown))
             rows.append([f"`{short(name, target.preset)}`", str(code), bound])
-    return [*sorted(rows), ["everything", str(whole), "-"]]
+    return [*sorted(rows), ["everything in double", str(one["double"]), "-"],
+            ["everything in float", str(one["float"]), "-"], ["everything", str(whole), "-"]]
 
 
 def markdown(header, rows):
