@@ -11,6 +11,9 @@ namespace mdhcal::offline {
 void add_calibrate(CLI::App& app);
 void add_pack(CLI::App& app);
 void add_forward(CLI::App& app);
+void add_inverse(CLI::App& app);
+void add_correct(CLI::App& app);
+void add_verify(CLI::App& app);
 void add_show(CLI::App& app);
 void add_diff(CLI::App& app);
 void add_export(CLI::App& app);
@@ -26,6 +29,9 @@ inline void add_commands(CLI::App& app) {
   add_calibrate(app);
   add_pack(app);
   add_forward(app);
+  add_inverse(app);
+  add_correct(app);
+  add_verify(app);
   add_show(app);
   add_diff(app);
   add_export(app);

@@ -62,7 +62,7 @@ Csv::Csv(std::string_view text, std::string path, const std::string& expected) :
   const std::size_t nul = text_.find('\0');
   if (nul != std::string_view::npos) {
     const long line = 1 + std::count(text_.begin(), text_.begin() + static_cast<std::ptrdiff_t>(nul), '\n');
-    throw InputError(path_, line, 0, "Found a zero byte; expected " + expected + " (CSV text).");
+    throw InputError(path_, line, 1, "Found a zero byte; expected " + expected + " (CSV text).");
   }
   if (text_.starts_with("\xEF\xBB\xBF")) at_ = 3;
   line_start_ = at_;
@@ -77,7 +77,7 @@ Csv::Csv(std::string_view text, std::string path, const std::string& expected) :
     }
     start = end + 1;
   }
-  if (!next()) throw InputError(path_, 0, 0, "The file is empty; expected " + expected + " with a header line.");
+  if (!next()) throw InputError(path_, 1, 1, "Found an empty file; expected " + expected + " with a header line.");
   header_line_ = line_;
   // A separator at the end of the header names no column.
   while (fields_.size() > 1 && fields_.back().text.empty()) fields_.pop_back();

@@ -31,6 +31,8 @@ class Csv {
   const std::string& path() const { return path_; }
   /// The line of the row, or of the header before the first next().
   long line() const { return line_; }
+  /// The column of the line in which a field of the row begins.
+  long column(std::size_t column) const { return column_at(fields_[column].at); }
 
   /// Throws InputError at a field of the row: "Column "q3": MESSAGE".
   [[noreturn]] void fail(std::size_t column, const std::string& message) const;

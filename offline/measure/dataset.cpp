@@ -49,7 +49,7 @@ class Reader {
     link_distances();
     add_notes();
     if (data_.rows.empty()) {
-      throw InputError(csv_.path(), csv_.line(), 0,
+      throw InputError(csv_.path(), csv_.line(), 1,
                        seen_ == 0 ? "Found no row under the header; expected a row a measured target."
                                   : "Found no measured point in any of the " + std::to_string(seen_) +
                                         " rows (all are 0, 0, 0 or empty); expected at least one.");
@@ -99,7 +99,7 @@ class Reader {
     }
     read_sigma(row);
     read_words(row);
-    if (!to.empty()) links_.push_back({data_.rows.size(), std::string(to), row.line});
+    if (!to.empty()) links_.push_back({data_.rows.size(), std::string(to), row.line, csv_.column(to_.index)});
     data_.rows.push_back(std::move(row));
   }
 
@@ -203,7 +203,7 @@ class Reader {
       const auto found = by_id.find(link.to);
       const bool own = found != by_id.end() && found->second == static_cast<std::int64_t>(link.row);
       if (found == by_id.end() || found->second == ambiguous || own) {
-        throw InputError(csv_.path(), link.line, 0,
+        throw InputError(csv_.path(), link.line, link.column,
                          "Column \"to\": found \"" + link.to + "\", which names " +
                              (own ? "the row itself" : found == by_id.end() ? "no row" : "more than one row") +
                              "; expected the id of one other row (or id/target).");
@@ -279,7 +279,7 @@ class Reader {
   struct Link {
     std::size_t row;
     std::string to;
-    long line;
+    long line, column;
   };
 
   Csv csv_;

@@ -23,9 +23,9 @@ BlobFile read_blob_file(const std::string& path) {
   return file;
 }
 
-Model read_blob(const std::string& path) { return read_blob_file(path).model; }
+mdhcal::Model read_blob(const std::string& path) { return read_blob_file(path).model; }
 
-Robot robot_of(const Model& model, const std::string& path) {
+Robot robot_of(const mdhcal::Model& model, const std::string& path) {
   Robot robot;
   robot.path = path;
   robot.name = model.name;

@@ -20,6 +20,13 @@ namespace {
 
 std::string quoted(std::string_view text) { return '"' + std::string(text) + '"'; }
 
+// The parser's own words, without the full stop.
+std::string described(const toml::parse_error& error) {
+  std::string words(error.description());
+  while (!words.empty() && words.back() == '.') words.pop_back();
+  return words;
+}
+
 std::string kind_of(const toml::node& node) {
   switch (node.type()) {
     case toml::node_type::table: return "a table";
@@ -38,7 +45,7 @@ class Reader {
   Reader(const std::string& text, const std::string& path) : path_(path) {
     const std::size_t nul = text.find('\0');
     if (nul != std::string::npos) {
-      throw InputError(path, 1 + std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(nul), '\n'), 0,
+      throw InputError(path, 1 + std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(nul), '\n'), 1,
                        "Found a zero byte; expected a robot file (TOML text).");
     }
     refuse_stray_characters(text, path);
@@ -47,7 +54,7 @@ class Reader {
     } catch (const toml::parse_error& error) {
       throw InputError(path, static_cast<long>(error.source().begin.line),
                        static_cast<long>(error.source().begin.column),
-                       "Not valid TOML: " + std::string(error.description()) + ".");
+                       "Not valid TOML: " + described(error) + "; expected a robot file in TOML.");
     }
   }
 
@@ -277,7 +284,7 @@ void Reader::read_joint(const toml::table& table, std::size_t index) {
 
 void Reader::read_links() {
   const auto tables = sections("link", max_joints);
-  if (tables.empty()) throw InputError(path_, 0, 0, "Found no section [[link]]; expected one a joint, base to flange.");
+  if (tables.empty()) throw InputError(path_, 1, 1, "Found no section [[link]]; expected one a joint, base to flange.");
   robot_.geometry.joint_count = static_cast<std::int32_t>(tables.size());
   // A standard table may hold lengths that cancel; what comes out of the conversion is held to the library's bound.
   const double length_bound = standard_ ? 1e6 : max_length_m;
@@ -431,7 +438,7 @@ Robot Reader::read() {
     make_expressible();
   }
   if (check(robot_.geometry) != Status::ok) {
-    throw InputError(path_, 0, 0, "The geometry is outside the library's valid range.");
+    throw InputError(path_, 1, 1, "Found a geometry outside the library's valid range; expected lengths and angles within it.");
   }
   return robot_;
 }

@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/cli/cli.hpp"
-#include "tests/support/random.hpp"
+#include "offline/simulate/random.hpp"
 #include "tests/support/shared_data.hpp"
 #include "tests/support/wide_frame.hpp"
 #include "mdhcal/blob.hpp"
@@ -33,7 +33,7 @@ TEST(Forward, NominalRobotReproducesThePublishedReferencePositions) {
 void expect_exact(const std::string& robot, const std::string& expected_source, int poses, std::uint64_t seed) {
   const TemporaryFolder folder;
   ASSERT_EQ(run_mdhcal({"pack", robot, "-o", folder / "a.blob"}).exit_code, 0);
-  Random random(seed);
+  offline::Random random(seed);
   std::string joints = "q1_rad,q2_rad,q3_rad,q4_rad,q5_rad,q6_rad\n";
   std::vector<std::array<double, 6>> q(static_cast<std::size_t>(poses));
   for (auto& row : q) {

@@ -8,14 +8,14 @@
 #include "offline/error.hpp"
 #include "offline/measure/dataset.hpp"
 #include "offline/robot/rotation.hpp"
-#include "tests/support/random.hpp"
+#include "offline/simulate/random.hpp"
 #include "tests/support/shared_data.hpp"
 
 namespace {
 
 using namespace mdhcal;
 using namespace mdhcal::offline;
-using mdhcal::tests::Random;
+using mdhcal::offline::Random;
 
 constexpr double deg = 3.14159265358979323846 / 180.0;
 
@@ -140,49 +140,49 @@ TEST(Dataset, DigestIsSha256OfTheBytes) {
 TEST(Dataset, EveryDialectReadsTheSame) {
   for (std::uint64_t seed = 1; seed <= 500; ++seed) {
     Random random(seed);
-    const std::size_t joints = 1 + random.below(8), rows = 1 + random.below(20);
+    const std::size_t joints = 1 + random.index(8), rows = 1 + random.index(20);
     const char separators[] = {',', ';', '\t'};
-    const char separator = separators[random.below(3)];
-    const bool comma = separator != ',' && random.below(2) == 0;
-    const char* end = random.below(2) == 0 ? "\r\n" : "\n";
-    const bool quotes = random.below(2) == 0;
-    std::string plain, text = random.below(2) == 0 ? "\xEF\xBB\xBF" : "";
+    const char separator = separators[random.index(3)];
+    const bool comma = separator != ',' && random.index(2) == 0;
+    const char* end = random.index(2) == 0 ? "\r\n" : "\n";
+    const bool quotes = random.index(2) == 0;
+    std::string plain, text = random.index(2) == 0 ? "\xEF\xBB\xBF" : "";
     std::vector<std::string> names;
     for (std::size_t j = 0; j < joints; ++j) names.push_back("q" + std::to_string(j + 1));
     for (const char* name : {"x", "y", "z"}) names.push_back(name);
     // Columns in any order.
-    for (std::size_t k = names.size(); k > 1; --k) std::swap(names[k - 1], names[random.below(k)]);
+    for (std::size_t k = names.size(); k > 1; --k) std::swap(names[k - 1], names[random.index(k)]);
     const auto field = [&](std::string value) {
       if (comma) std::replace(value.begin(), value.end(), '.', ',');
-      if (quotes && random.below(2) == 0) value = '"' + value + '"';
-      if (random.below(4) == 0) value = ' ' + value + ' ';
-      if (random.below(8) == 0 && value[0] != '-' && value[0] != '"' && value[0] != ' ') value = '+' + value;
+      if (quotes && random.index(2) == 0) value = '"' + value + '"';
+      if (random.index(4) == 0) value = ' ' + value + ' ';
+      if (random.index(8) == 0 && value[0] != '-' && value[0] != '"' && value[0] != ' ') value = '+' + value;
       return value;
     };
     const auto noise = [&] {
-      if (random.below(3) == 0) text += "# a comment; with, separators\t\"" + std::string(end);
-      if (random.below(3) == 0) text += end;
-      if (random.below(5) == 0) text += std::string(names.size() - 1, separator) + end;
+      if (random.index(3) == 0) text += "# a comment; with, separators\t\"" + std::string(end);
+      if (random.index(3) == 0) text += end;
+      if (random.index(5) == 0) text += std::string(names.size() - 1, separator) + end;
     };
     noise();
     for (std::size_t k = 0; k < names.size(); ++k) {
       plain += (k == 0 ? "" : ",") + names[k];
       std::string name = names[k];
-      if (random.below(3) == 0) name[0] = static_cast<char>(std::toupper(name[0]));
+      if (random.index(3) == 0) name[0] = static_cast<char>(std::toupper(name[0]));
       text += (k == 0 ? "" : std::string(1, separator)) + (quotes ? '"' + name + '"' : name);
     }
     plain += '\n';
-    text += random.below(4) == 0 ? std::string(1, separator) + end : end;
+    text += random.index(4) == 0 ? std::string(1, separator) + end : end;
     for (std::size_t r = 0; r < rows; ++r) {
       noise();
       for (std::size_t k = 0; k < names.size(); ++k) {
         char number[40];
-        std::snprintf(number, sizeof number, random.below(6) == 0 ? "%.9e" : "%.6f", random.uniform(-350, 350));
+        std::snprintf(number, sizeof number, random.index(6) == 0 ? "%.9e" : "%.6f", random.uniform(-350, 350));
         plain += (k == 0 ? "" : ",") + std::string(number);
         text += (k == 0 ? "" : std::string(1, separator)) + field(number);
       }
       plain += '\n';
-      text += r + 1 < rows || random.below(2) == 0 ? end : "";
+      text += r + 1 < rows || random.index(2) == 0 ? end : "";
     }
     const Robot robot = arm(static_cast<int>(joints));
     const Dataset a = parse_dataset(plain, "plain.csv", robot);
@@ -201,9 +201,9 @@ TEST(Dataset, MessagesNameThePlaceWhatWasFoundAndWhatWasExpected) {
   const struct {
     std::string text, place, found, expected;
   } cases[] = {
-      {"", "m.csv:", "empty", "a measurement file with a header"},
-      {"# only a comment\n\n", "m.csv:", "empty", "a header"},
-      {header, "m.csv:", "no row", "expected a row"},
+      {"", "m.csv:1:1:", "empty file", "a measurement file with a header"},
+      {"# only a comment\n\n", "m.csv:1:1:", "empty file", "a header"},
+      {header, "m.csv:1:1:", "no row", "expected a row"},
       {"q1,x,y,z\n1,2,3,4\n", "m.csv:1:1:", "\"q2\" is missing", "the robot has 2 joints"},
       {"q1,q2,q3,x,y,z\n1,2,3,4,5,6\n", "m.csv:1:7:", "reading of joint 3", "as the robot has joints, 2"},
       {"q1,q2,q1,x,y,z\n1,2,3,4,5,6\n", "m.csv:1:7:", "\"q1\" a second time", "each column once"},
@@ -224,17 +224,17 @@ TEST(Dataset, MessagesNameThePlaceWhatWasFoundAndWhatWasExpected) {
       {header + "1,2,3,4,5 mm\n", "m.csv:2:9:", "\"5 mm\"", "expected a number"},
       {header + "1,\"2,3,4,5\n", "m.csv:2:3:", "never closed", "expected another quote"},
       {header + "1,\"2\"x,3,4,5\n", "m.csv:2:6:", "behind a closing quote", "expected a separator"},
-      {header + "0,0,0,0,0\n", "m.csv:2:", "no measured point in any of the 1 rows", "at least one"},
+      {header + "0,0,0,0,0\n", "m.csv:2:1:", "no measured point in any of the 1 rows", "at least one"},
       {header + "1,2,3e9,4,5\n", "m.csv:2:5:", "3e9", "expected at most 1e+09 mm"},
       {"q1_m,q2,x,y,z\n1,2,3,4,5\n", "m.csv:1:1:", "\"q1\" is missing", "q1_m"},
       {"q1,q2,x,y,z,sigma,sx,sy,sz\n1,2,3,4,5,1,1,1,1\n", "m.csv:1:13:", "beside sx, sy, sz", "one of the two"},
       {"q1,q2,x,y,z,sigma\n1,2,3,4,5,-1\n", "m.csv:2:11:", "found -1", "not below 0"},
       {"q1,q2,x,y,z,qw,qx,qy,qz\n1,2,3,4,5,1,1,0,0\n", "m.csv:2:11:", "norm 1.414", "a norm of 1"},
       {"q1,q2,x,y,z,distance\n1,2,,,,5\n", "m.csv:2:8:", "a distance to nothing", "the other row's id"},
-      {"q1,q2,x,y,z,distance,to\n1,2,,,,5,7\n", "m.csv:2:", "\"7\", which names no row", "the id of one other row"},
-      {"q1,q2,x,y,z,distance,to\n1,2,,,,5,1\n", "m.csv:2:", "the row itself", "the id of one other row"},
+      {"q1,q2,x,y,z,distance,to\n1,2,,,,5,7\n", "m.csv:2:10:", "\"7\", which names no row", "the id of one other row"},
+      {"q1,q2,x,y,z,distance,to\n1,2,,,,5,1\n", "m.csv:2:10:", "the row itself", "the id of one other row"},
       {"q1,q2,x,y,z,target\n1,2,3,4,5,a-name-too-long-to-keep\n", "m.csv:2:11:", "23 bytes", "at most 15"},
-      {std::string("q1,q2,x,y,z\n1,2,3,4,\0\n", 22), "m.csv:2:", "zero byte", "CSV text"},
+      {std::string("q1,q2,x,y,z\n1,2,3,4,\0\n", 22), "m.csv:2:1:", "zero byte", "CSV text"},
       {"\xFF\xFEq", "m.csv:1:1:", "UTF-16", "UTF-8"},
   };
   for (const auto& c : cases) {

@@ -8,7 +8,7 @@
 #include "offline/robot/robot.hpp"
 #include "offline/robot/rotation.hpp"
 #include "tests/support/program.hpp"
-#include "tests/support/random.hpp"
+#include "offline/simulate/random.hpp"
 #include "tests/support/shared_data.hpp"
 #include "tests/support/wide_frame.hpp"
 
@@ -79,12 +79,12 @@ MDHCAL_SHARED_DATA_TEST(Convention, FactoryRobotsKeepTheirPosesAndLoseTheirLongL
 TEST(Convention, RandomStandardTablesKeepTheirPoses) {
   for (std::uint64_t seed = 1; seed <= 2000; ++seed) {
     Random random(seed);
-    std::vector<StandardLink> table(1 + random.below(8));
+    std::vector<StandardLink> table(1 + random.index(8));
     Geometry geometry{};
     for (StandardLink& link : table) {
       const double twists[] = {0, 1.5707963267948966, 3.141592653589793, 1e-7, 1e-3, -0.02, 3.14, random.uniform(-3, 3)};
-      link = {random.uniform(-3, 3), random.uniform(-1, 1), random.below(3) == 0 ? 0.0 : random.uniform(-1, 1),
-              twists[random.below(8)]};
+      link = {random.uniform(-3, 3), random.uniform(-1, 1), random.index(3) == 0 ? 0.0 : random.uniform(-1, 1),
+              twists[random.index(8)]};
     }
     const ModifiedChain chain = mdh_from_standard(table);
     geometry.joint_count = static_cast<std::int32_t>(table.size());
@@ -123,15 +123,15 @@ Frame<double> nearly_parallel_frame(Random& random, double tilt) {
 TEST(Convention, AnyChainOfFixedTransformsIsExpressed) {
   for (std::uint64_t seed = 1; seed <= 4000; ++seed) {
     Random random(seed);
-    const std::size_t count = 1 + random.below(8);
+    const std::size_t count = 1 + random.index(8);
     std::vector<Frame<double>> fixed;
     for (std::size_t i = 0; i <= count; ++i) {
       const double tilts[] = {0, 1e-9, 1e-4, 0.05};
-      fixed.push_back(random.below(2) == 0 ? random_frame(random) : nearly_parallel_frame(random, tilts[random.below(4)]));
+      fixed.push_back(random.index(2) == 0 ? random_frame(random) : nearly_parallel_frame(random, tilts[random.index(4)]));
     }
     // Coaxial neighbours: no direction of x is given by the geometry.
-    if (random.below(4) == 0) {
-      fixed[random.below(count + 1)] = {{1, 0, 0, 0, 1, 0, 0, 0, 1}, {0, 0, random.uniform(-1, 1)}};
+    if (random.index(4) == 0) {
+      fixed[random.index(count + 1)] = {{1, 0, 0, 0, 1, 0, 0, 0, 1}, {0, 0, random.uniform(-1, 1)}};
     }
     const ModifiedChain chain = mdh_from_chain(fixed);
     ASSERT_EQ(chain.links.size(), count);
@@ -140,7 +140,7 @@ TEST(Convention, AnyChainOfFixedTransformsIsExpressed) {
     for (std::size_t i = 0; i < count; ++i) {
       geometry.link[i] = chain.links[i];
       geometry.joint[i].sign = 1;
-      geometry.joint[i].kind = random.below(3) == 0 ? JointKind::prismatic : JointKind::revolute;
+      geometry.joint[i].kind = random.index(3) == 0 ? JointKind::prismatic : JointKind::revolute;
       ASSERT_LT(std::abs(chain.links[i].beta_rad), 1.5 * nearly_parallel_rad) << "seed " << seed;
     }
     geometry.last_T_flange = pose_of(chain.last_T_flange);

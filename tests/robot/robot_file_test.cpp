@@ -8,13 +8,13 @@
 #include "offline/error.hpp"
 #include "offline/robot/robot.hpp"
 #include "offline/robot/units.hpp"
-#include "tests/support/random.hpp"
+#include "offline/simulate/random.hpp"
 
 namespace {
 
 using namespace mdhcal;
 using namespace mdhcal::offline;
-using mdhcal::tests::Random;
+using mdhcal::offline::Random;
 
 const std::string one_link = "[[link]]\nalpha = 0\na = 0\nd = 100.0\n";
 
@@ -122,7 +122,7 @@ TEST(RobotFile, MessagesNameThePlaceWhatWasFoundAndWhatWasExpected) {
       {one_link + "name =\n", ":5", "", ""},
       {"name = \"a\nb\"\n" + one_link, ":1:", "", ""},
       {"link = 3\n", ":1:8:", "found 3", "expected sections [[link]]"},
-      {"name = \"a\"\n", ":", "no section [[link]]", "expected one a joint"},
+      {"name = \"a\"\n", ":1:1:", "no section [[link]]", "expected one a joint"},
       {"name = \"0123456789012345678901234567890123456789012345678901234567890123\"\n" + one_link, ":1:8:", "64 bytes",
        "expected at most 63"},
       {one_link + one_link + one_link + one_link + one_link + one_link + one_link + one_link + one_link, ":33:1:",
@@ -143,33 +143,33 @@ double decimal(Random& random, double bound, int digits) {
 }
 
 std::string random_file(Random& random) {
-  const bool mm = random.below(2) == 0, deg = random.below(2) == 0, standard = random.below(2) == 0;
+  const bool mm = random.index(2) == 0, deg = random.index(2) == 0, standard = random.index(2) == 0;
   const double length = mm ? 1000.0 : 1.0, angle = deg ? 180.0 : 3.0;
-  const auto number = [&](double bound) { return shortest_decimal(decimal(random, bound, random.below(2) == 0 ? 3 : 15)); };
+  const auto number = [&](double bound) { return shortest_decimal(decimal(random, bound, random.index(2) == 0 ? 3 : 15)); };
   std::string text = "name = \"robot \\\"é\\\\\"\nserial = \"7\"\n";
   text += mm ? "" : "length_unit = \"m\"\n";
   text += deg ? "" : "angle_unit = \"rad\"\n";
   text += standard ? "convention = \"standard\"\n" : "";
-  const std::size_t count = 1 + random.below(8);
+  const std::size_t count = 1 + random.index(8);
   for (std::size_t i = 0; i < count; ++i) {
     text += "[[link]]\n";
-    if (random.below(4) == 0) text += "joint = \"prismatic\"\n";
+    if (random.index(4) == 0) text += "joint = \"prismatic\"\n";
     // Half of the twists are nearly parallel, in every sense of it.
     const double twists[] = {0, deg ? 90.0 : pi / 2, angle * 1e-5, angle * 0.01, -angle * 0.013, random.uniform(-angle, angle)};
-    text += "alpha = " + shortest_decimal(twists[random.below(6)]) + "\n";
-    text += "a = " + (random.below(3) == 0 ? "0" : number(length)) + "\n";
+    text += "alpha = " + shortest_decimal(twists[random.index(6)]) + "\n";
+    text += "a = " + (random.index(3) == 0 ? "0" : number(length)) + "\n";
     text += "d = " + number(length) + "\n";
     text += "theta = " + number(angle) + "\n";
-    if (random.below(3) == 0) text += "sign = -1\nmin = " + number(length / 1000) + "\n";
-    if (!standard && random.below(2) == 0) {
+    if (random.index(3) == 0) text += "sign = -1\nmin = " + number(length / 1000) + "\n";
+    if (!standard && random.index(2) == 0) {
       text += "beta = " + number(0.1 * angle) + "\nnominal = {alpha = " + number(angle) + ", a = " + number(length) +
               ", d = " + number(length) + "}\n";
     }
   }
   if (count > 2) text += "[[coupling]]\nof = 3\nby = 2\nratio = " + number(mm ? 0.03 : 1.0) + "\n";
   text += "[flange]\nxyz = [1, " + number(length) + ", 3]\nrxryrz = [" + number(angle) + ", 0.1, " + number(angle) + "]\n";
-  if (random.below(2) == 0) text += "[base]\nxyz = [1, 2, 3]\nrxryrz = [0, " + number(angle) + ", " + number(angle) + "]\n";
-  if (random.below(2) == 0) text += "[tool]\nxyz = [1, 2, " + number(length) + "]\n";
+  if (random.index(2) == 0) text += "[base]\nxyz = [1, 2, 3]\nrxryrz = [0, " + number(angle) + ", " + number(angle) + "]\n";
+  if (random.index(2) == 0) text += "[tool]\nxyz = [1, 2, " + number(length) + "]\n";
   text += "[[target]]\nname = \"A\"\nxyz = [" + number(length) + ", 0, 0]\n[prior]\na1 = 0.3\nbeta1 = 0.001\nalpha1 = 0.02\n";
   return text;
 }
