@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: MIT
+#include <cstdio>
 #include <memory>
+#include <optional>
 
 #include "offline/cli/calibration_arguments.hpp"
 #include "offline/cli/messages.hpp"
@@ -11,7 +13,7 @@ namespace mdhcal::offline {
 
 namespace {
 
-void run(const CalibrationArguments& arguments) {
+void run(const CalibrationArguments& arguments, std::size_t resamples, const std::optional<std::size_t>& folds) {
   const CalibrationOptions options = calibration_options(arguments);
   const std::string date = blob_date(arguments.date);
   const Robot robot = read_robot(arguments.robot);
@@ -21,7 +23,17 @@ void run(const CalibrationArguments& arguments) {
   OutputFolder folder(arguments.directory, result_names);
   const Calibration c = calibrate(robot, data, options, arguments.test.empty() ? nullptr : &test);
 
-  write_result(folder, c, date, true);
+  Assessment assessment;
+  if (resamples > 0) assessment.bootstrap = bootstrap(c, resamples, options.seed);
+  if (folds) {
+    assessment.cross_validation = cross_validate(robot, data, options, *folds);
+    const Statistics& s = assessment.cross_validation->after;
+    char text[128];
+    std::snprintf(text, sizeof text, "Cross-validation in %zu folds of whole groups: mean error %.4f mm, maximum %.4f mm.",
+                  assessment.cross_validation->folds, s.mean, s.max);
+    inform(text);
+  }
+  write_result(folder, c, date, true, {}, assessment);
   folder.commit();
 
   for (const std::string& note : data.notes) inform(note);
@@ -47,10 +59,15 @@ void add_calibrate(CLI::App& app) {
                                           "quasi-optimality"}))
                    ->capture_default_str();
   command->add_option("--lambda", options.lambda, "Lambda itself, instead of a rule")->excludes(rule);
+  auto resamples = std::make_shared<std::size_t>(0);
+  auto folds = std::make_shared<std::optional<std::size_t>>();
+  command->add_option("--bootstrap", *resamples, "Resamples of whole groups for result.json, such as 1000");
+  command->add_option("--cross-validate", *folds,
+                      "Repeat the calibration in this many folds of whole groups; 0: one group at a time");
   command->add_option("--date", arguments->date, "Date in the blob, YYYY-MM-DD");
   command->footer(
       "Example:\n  mdhcal calibrate robot.toml nine_poses.csv --test eighteen_poses.csv --base given --tool given -o result");
-  command->callback([arguments] { run(*arguments); });
+  command->callback([arguments, resamples, folds] { run(*arguments, *resamples, *folds); });
 }
 
 }  // namespace mdhcal::offline

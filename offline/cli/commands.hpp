@@ -9,6 +9,7 @@
 namespace mdhcal::offline {
 
 void add_calibrate(CLI::App& app);
+void add_compare(CLI::App& app);
 void add_pack(CLI::App& app);
 void add_forward(CLI::App& app);
 void add_inverse(CLI::App& app);
@@ -27,6 +28,7 @@ void add_convert(CLI::App& app);
 /// All of them, in the order in which `mdhcal --help` lists them.
 inline void add_commands(CLI::App& app) {
   add_calibrate(app);
+  add_compare(app);
   add_pack(app);
   add_forward(app);
   add_inverse(app);

@@ -43,15 +43,16 @@ LambdaRule rule_of(const CalibrationOptions& options) {
 }
 
 // Draws whole groups for the test until the fraction is reached.
-void split_off_test(const Dataset& data, double fraction, std::uint64_t seed, std::vector<std::size_t>& training,
+void split_off_test(const Dataset& data, const CalibrationOptions& options, std::vector<std::size_t>& training,
                     std::vector<std::size_t>& testing) {
   std::vector<std::uint32_t> order(data.groups.size());
   std::iota(order.begin(), order.end(), 0U);
-  Random random(seed);
+  Random random(options.seed);
   for (std::size_t i = order.size(); i > 1; --i) std::swap(order[i - 1], order[random.index(i)]);
-  const auto wanted = static_cast<std::size_t>(std::llround(fraction * static_cast<double>(order.size())));
+  const auto wanted = static_cast<std::size_t>(std::llround(options.test_fraction * static_cast<double>(order.size())));
   std::vector<bool> drawn(order.size(), false);
   for (std::size_t i = 0; i < std::min(wanted, order.size()); ++i) drawn[order[i]] = true;
+  for (std::uint32_t group : options.held_out_groups) drawn[group] = true;
   for (std::size_t row = 0; row < data.rows.size(); ++row) {
     if (data.rows[row].kind == MeasurementKind::joints) continue;
     (drawn[data.rows[row].group] ? testing : training).push_back(row);
@@ -132,6 +133,7 @@ void note_commanded(const Robot& robot, const Dataset& data, const CalibrationOp
   copy.commanded.clear();
   other.commanded_joints = false;
   other.test_fraction = 0;
+  other.held_out_groups.clear();
   const Calibration with = calibrate(robot, copy, other);
   const bool better = with.scale_mm < scale_mm;
   const char* used = options.commanded_joints ? "commanded" : "read";
@@ -167,7 +169,7 @@ Calibration calibrate(const Robot& robot, const Dataset& given, const Calibratio
                                           " joints; expected " + std::to_string(robot.geometry.joint_count) + ".");
   }
   std::vector<std::size_t> testing;
-  split_off_test(data, options.test_fraction, options.seed, out.training_rows, testing);
+  split_off_test(data, options, out.training_rows, testing);
   if (test != nullptr) {
     out.testing = aligned(options.commanded_joints ? with_commanded(*test) : *test, data);
   }
@@ -178,6 +180,7 @@ Calibration calibrate(const Robot& robot, const Dataset& given, const Calibratio
   setup_options.parameters = options.parameters;
   setup_options.noise_mm = options.noise_mm.value_or(0.02);
   const double noise_mm = setup_options.noise_mm;
+  out.noise_mm = noise_mm;
   const Setup setup = make_setup(robot, data, out.training_rows, setup_options);
   out.layout = setup.layout;
   out.decisions = setup.parameters.decisions;
@@ -286,7 +289,7 @@ Calibration calibrate(const Robot& robot, const Dataset& given, const Calibratio
   if (test != nullptr) {
     std::vector<std::size_t> all;
     std::vector<std::size_t> none;
-    split_off_test(out.testing, 0.0, options.seed, all, none);
+    split_off_test(out.testing, {}, all, none);
     out.test = judge_rows(judge, out.testing, all, true, out.rows);
   } else if (!testing.empty()) {
     out.testing = data;

@@ -24,6 +24,7 @@ struct CalibrationOptions {
   std::optional<double> noise_mm;       ///< --noise: standard deviation an axis where no sigma is stated; else 0.02
   std::uint64_t seed = 1;
   double test_fraction = 0;             ///< --test-fraction, in [0, 1): of the groups, drawn by seed
+  std::vector<std::uint32_t> held_out_groups; ///< or these groups of the dataset
   bool commanded_joints = false;        ///< use the commanded readings (q1_cmd ...)
   bool robust = true;
   ParameterChoice parameters;
@@ -87,6 +88,7 @@ struct Calibration {
   std::vector<RowResult> rows;    ///< training rows, then test rows, each in file order
   std::vector<EstimatedParameter> parameters;
   Identifiability identifiability;
+  double noise_mm = 0.02;         ///< the noise that was assumed where no sigma is stated
   double scale_mm = 0;            ///< of one axis's residual (in standard deviations with sigma)
   double outlier_threshold_mm = 0;///< error norm of a position beyond which a row is an outlier
   std::vector<Dependence> dependences;

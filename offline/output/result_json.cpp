@@ -84,6 +84,19 @@ Json lambda(const LambdaReport& report) {
   return json;
 }
 
+Json bootstrap_json(const Calibration& c, const Bootstrap& b) {
+  Json json = {{"resamples", b.resamples}, {"parameters", Json::array()}};
+  for (std::size_t p = 0; p < c.parameters.size(); ++p) {
+    const bool angle = is_angle(c.parameters[p].id);
+    const double factor = angle ? degrees : 1e3;
+    json["parameters"].push_back({{"name", name(c.parameters[p].id)},
+                                  {"unit", angle ? "deg" : "mm"},
+                                  {"standard_deviation", finite(b.standard_deviation[p] * factor)},
+                                  {"interval_95", {finite(b.low[p] * factor), finite(b.high[p] * factor)}}});
+  }
+  return json;
+}
+
 Json frame(const Frame<double>& f) {
   const double* r = f.rotation;
   Json rows = Json::array();
@@ -95,7 +108,7 @@ Json frame(const Frame<double>& f) {
 
 }  // namespace
 
-std::string result_json(const Calibration& c) {
+std::string result_json(const Calibration& c, const Assessment& assessment) {
   Json json;
   json["tool"] = MDHCAL_TOOL_VERSION;
   json["robot"] = c.robot.name;
@@ -137,6 +150,12 @@ std::string result_json(const Calibration& c) {
   json["uncertainty"] = {{"prior_scale", finite(c.covariance.prior_scale)},
                          {"degrees_of_freedom", finite(c.covariance.freedom)},
                          {"coverage_factor", finite(c.covariance.coverage_factor)}};
+  json["bootstrap"] = assessment.bootstrap ? bootstrap_json(c, *assessment.bootstrap) : Json(nullptr);
+  json["cross_validation"] = nullptr;
+  if (assessment.cross_validation) {
+    const CrossValidation& cv = *assessment.cross_validation;
+    json["cross_validation"] = {{"folds", cv.folds}, {"before", figures(cv.before)}, {"after", figures(cv.after)}};
+  }
   json["dependences"] = Json::array();
   for (const Dependence& d : c.dependences) {
     json["dependences"].push_back({{"quantity", d.quantity},

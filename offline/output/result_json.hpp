@@ -1,14 +1,23 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <optional>
 #include <string>
 
+#include "offline/assess/bootstrap.hpp"
+#include "offline/assess/cross_validation.hpp"
 #include "offline/identify/calibrate.hpp"
 
 namespace mdhcal::offline {
 
+/// What was assessed beside the calibration itself; null in the file where it was not.
+struct Assessment {
+  std::optional<Bootstrap> bootstrap;
+  std::optional<CrossValidation> cross_validation;
+};
+
 /// A calibration as result.json (DESIGN.md): figures in millimetres and degrees under keys that say so; every number is
 /// finite, else null. The same calibration gives the same bytes.
-std::string result_json(const Calibration& calibration);
+std::string result_json(const Calibration& calibration, const Assessment& assessment = {});
 
 }  // namespace mdhcal::offline

@@ -9,12 +9,12 @@
 namespace mdhcal::offline {
 
 void write_result(OutputFolder& folder, const Calibration& calibration, const std::string& date, bool with_report,
-                  ReportContext context) {
+                  ReportContext context, const Assessment& assessment) {
   const Blob blob = calibration_blob(calibration, date);
   const std::string_view bytes(reinterpret_cast<const char*>(blob.data()), blob.size());
   folder.write("calibration.blob", bytes);
   folder.write("corrected.toml", corrected_toml(calibration));
-  folder.write("result.json", result_json(calibration));
+  folder.write("result.json", result_json(calibration, assessment));
   folder.write("residuals.csv", residuals_csv(calibration));
   if (!with_report) return;
   auto& provenance = context.provenance;

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: MIT
+#include "offline/assess/cross_validation.hpp"
+
+#include <algorithm>
+#include <numeric>
+
+#include "offline/identify/rigid.hpp"
+#include "offline/simulate/random.hpp"
+
+namespace mdhcal::offline {
+
+CrossValidation cross_validate(const Robot& robot, const Dataset& data, const CalibrationOptions& options,
+                               std::size_t folds) {
+  std::vector<std::size_t> order(data.groups.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  Random random(options.seed);
+  for (std::size_t i = order.size(); i > 1; --i) std::swap(order[i - 1], order[random.index(i)]);
+  CrossValidation out;
+  out.folds = folds == 0 ? order.size() : std::min(folds, order.size());
+  std::vector<double> before;
+  std::vector<double> after;
+  for (std::size_t fold = 0; fold < out.folds; ++fold) {
+    CalibrationOptions one = options;
+    one.test_fraction = 0;
+    for (std::size_t g = fold; g < order.size(); g += out.folds) {
+      one.held_out_groups.push_back(static_cast<std::uint32_t>(order[g]));
+    }
+    const Calibration c = calibrate(robot, data, one);
+    out.lambda.push_back(c.lambda.lambda);
+    for (const RowResult& r : c.rows) {
+      if (!r.test) continue;
+      before.push_back(norm(r.before_mm));
+      after.push_back(norm(r.after_mm));
+    }
+  }
+  out.before = statistics(before);
+  out.after = statistics(after);
+  return out;
+}
+
+}  // namespace mdhcal::offline
