@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: MIT
+// Runs every command of docs/tutorial.md in order and compares what it prints.
+#include <filesystem>
+#include <sstream>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "tests/support/program.hpp"
+
+namespace {
+
+namespace fs = std::filesystem;
+using namespace mdhcal::tests;
+
+struct Step {
+  std::string command, output;
+};
+
+// The lines of the ```console blocks: "$ COMMAND", then what it prints.
+std::vector<Step> steps_of(const std::string& page) {
+  std::vector<Step> steps;
+  std::istringstream lines(page);
+  bool inside = false;
+  for (std::string line; std::getline(lines, line);) {
+    if (line.starts_with("```")) {
+      inside = line == "```console";
+    } else if (inside && line.starts_with("$ ")) {
+      steps.push_back({line.substr(2), ""});
+    } else if (inside && !steps.empty()) {
+      steps.back().output += line + '\n';
+    }
+  }
+  return steps;
+}
+
+TEST(Tutorial, EveryCommandPrintsWhatThePageSays) {
+  const auto steps = steps_of(read_bytes(std::string(MDHCAL_SOURCE_DIR) + "/docs/tutorial.md"));
+  ASSERT_GT(steps.size(), 15u);
+  const TemporaryFolder folder;
+  fs::create_directory_symlink(std::string(MDHCAL_SOURCE_DIR) + "/offline", folder / "offline");
+  fs::create_directory(folder / "bin");
+  fs::create_symlink(MDHCAL_PROGRAM, folder / "bin/mdhcal");
+  RunOptions options;
+  options.folder = folder.path();
+  for (const Step& step : steps) {
+    const auto run = run_program("bash", {"-c", "exec 2>&1; PATH=\"$PWD/bin:$PATH\"; " + step.command}, options);
+    EXPECT_EQ(run.out, step.output) << step.command;
+  }
+}
+
+}  // namespace
