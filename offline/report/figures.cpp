@@ -141,9 +141,9 @@ Figure distribution_figure(const Calibration& calibration) {
                   data_block("after", cumulative(after)) +
                   "set multiplot layout 1,2\nset grid\nset style fill solid 0.6\nset boxwidth " +
                   text_of(nonzero(high) / 24 * 0.92) +
-                  "\nset xlabel 'error after [mm]'\nset ylabel 'rows'\nset xrange [0:*]\nset yrange [0:*]\n"
+                  "\nset xtics rotate by 45 right\nset xlabel 'error after [mm]'\nset ylabel 'rows'\nset xrange [0:*]\nset yrange [0:*]\n"
                   "plot $bars using 1:2 with boxes lc " + after_colour + " notitle\n"
-                  "set logscale x\nset xrange [*:*]\nset yrange [0:100]\nset xlabel 'error [mm]'\n"
+                  "set xtics norotate\nset logscale x\nset xrange [*:*]\nset yrange [0:100]\nset xlabel 'error [mm]'\n"
                   "set ylabel 'rows at or below [%]'\nset key bottom right\n"
                   "plot $before using 1:2 with steps lw 2 lc " + before_colour + " title 'before', "
                   "$after using 1:2 with steps lw 2 lc " + after_colour + " title 'after'\nunset multiplot";
@@ -222,7 +222,7 @@ Figure vectors_figure(const Calibration& calibration) {
   Figure figure{"Error vectors after calibration, enlarged " + text_of(factor) + " times, in the robot's base frame", "", 720,
                 480};
   figure.script = data_block("v", rows) + "f = " + text_of(factor) +
-                  "\nset xlabel 'x [mm]'\nset ylabel 'y [mm]'\nset zlabel 'z [mm]' rotate\nset grid\nset view 62,38,1.35,1.2\n"
+                  "\nset xlabel 'x [mm]'\nset ylabel 'y [mm]'\nset zlabel 'z [mm]' rotate\nset grid\nset view 62,38,1.1,1.1\n"
                   "set xyplane 0.05\nset tics font ',9'\nset cblabel 'error [mm]'\n"
                   "set palette defined (0 '#440154', 0.5 '#21908c', 1 '#fde725')\n"
                   "splot $v using 1:2:3:($4*f):($5*f):($6*f):7 with vectors head size graph 0.01,20 lw 1.2 lc palette notitle";
@@ -277,7 +277,7 @@ Figure spectrum_figure(const Calibration& calibration) {
 Figure accuracy_figure(const PredictedAccuracy& accuracy) {
   Figure figure{"Predicted standard deviation of the position over the workspace, robot's base frame", "", 720, 460};
   figure.script = data_block("p", accuracy.points) +
-                  "set xlabel 'x [mm]'\nset ylabel 'y [mm]'\nset zlabel 'z [mm]' rotate\nset grid\nset view 62,38,1.35,1.2\n"
+                  "set xlabel 'x [mm]'\nset ylabel 'y [mm]'\nset zlabel 'z [mm]' rotate\nset grid\nset view 62,38,1.1,1.1\n"
                   "set xyplane 0.05\nset tics font ',9'\nset cblabel 'standard deviation [mm]'\n"
                   "set palette defined (0 '#440154', 0.5 '#21908c', 1 '#fde725')\n"
                   "splot $p using 1:2:3:4 with points pt 7 ps 0.6 lc palette notitle";
