@@ -15,6 +15,7 @@ void add_forward(CLI::App& app);
 void add_inverse(CLI::App& app);
 void add_correct(CLI::App& app);
 void add_verify(CLI::App& app);
+void add_monitor(CLI::App& app);
 void add_show(CLI::App& app);
 void add_diff(CLI::App& app);
 void add_export(CLI::App& app);
@@ -34,6 +35,7 @@ inline void add_commands(CLI::App& app) {
   add_inverse(app);
   add_correct(app);
   add_verify(app);
+  add_monitor(app);
   add_show(app);
   add_diff(app);
   add_export(app);

@@ -3,19 +3,18 @@
 #include <cmath>
 #include <cstdio>
 #include <memory>
-#include <numeric>
 #include <optional>
 
 #include <nlohmann/json.hpp>
 
 #include "offline/assess/statistics.hpp"
+#include "offline/cli/acceptance.hpp"
 #include "offline/cli/blob_command.hpp"
+#include "offline/cli/blob_registration.hpp"
 #include "offline/cli/commands.hpp"
 #include "offline/cli/messages.hpp"
 #include "offline/error.hpp"
-#include "offline/identify/setup.hpp"
 #include "offline/output/blob_file.hpp"
-#include "offline/robot/rotation.hpp"
 
 namespace mdhcal::offline {
 
@@ -25,72 +24,8 @@ struct Arguments {
   std::string blob, measurements;
   bool refit_base = false, refit_tool = false, json = false;
   std::optional<double> max_mean_mm, max_max_mm;
+  AcceptanceOptions acceptance;
 };
-
-std::string listed(const std::vector<TargetPoint>& targets) {
-  std::string names;
-  for (const TargetPoint& target : targets) {
-    names += names.empty() ? "\"" : ", \"";
-    names += target.name + '"';
-  }
-  return names.empty() ? "none" : names;
-}
-
-// The blob's point for each target of the measurements. A file that names no target means the blob's only one, or the
-// flange origin if the blob has none.
-std::vector<Vector3> target_points(const Robot& robot, const Dataset& data) {
-  std::vector<Vector3> points;
-  for (const std::string& name : data.targets) {
-    const auto same = [&](const TargetPoint& t) { return t.name == name; };
-    const auto found = std::find_if(robot.targets.begin(), robot.targets.end(), same);
-    if (found != robot.targets.end()) {
-      points.push_back(found->flange_p_m);
-    } else if (name.empty() && robot.targets.size() <= 1) {
-      points.push_back(robot.targets.empty() ? Vector3{} : robot.targets[0].flange_p_m);
-    } else {
-      throw InputError(data.path, 0, 0,
-                       (name.empty() ? "Found no column \"target\"" : "Found the target \"" + name + '"') +
-                           "; expected one of the blob's targets: " + listed(robot.targets) +
-                           " (or --refit-tool, which fits the points to these measurements).");
-    }
-  }
-  return points;
-}
-
-// Frame and points in which the comparison is made: the blob's, or fitted to these measurements with the geometry of
-// the blob kept.
-struct Registration {
-  Frame<double> tracker_T_base;
-  std::vector<Vector3> flange_p_m;
-};
-
-Registration registration(const Arguments& arguments, Robot robot, const Dataset& data) {
-  Registration r{frame_of(robot.tracker_T_base.value_or(Pose<double>{{1, 0, 0, 0}, {0, 0, 0}})), {}};
-  if (!arguments.refit_tool) r.flange_p_m = target_points(robot, data);
-  if (!arguments.refit_base && !arguments.refit_tool) return r;
-  // What is fitted starts from nothing; what is kept is handed over as the robot's own.
-  robot.targets.clear();
-  for (std::size_t k = 0; k < r.flange_p_m.size(); ++k) robot.targets.push_back({data.targets[k], r.flange_p_m[k]});
-  std::copy(std::begin(robot.geometry.link), std::end(robot.geometry.link), robot.nominal.begin());
-  SetupOptions options;
-  options.fit_base = arguments.refit_base;
-  options.fit_tool = arguments.refit_tool;
-  Selection selection;
-  selection.rows.resize(data.rows.size());
-  std::iota(selection.rows.begin(), selection.rows.end(), std::size_t{0});
-  const Setup setup = make_setup(robot, data, selection.rows, options);
-  const Fit fitted = fit_frames(setup, data, selection, options.noise_mm);
-  return {fitted.estimate.tracker_T_base, fitted.estimate.flange_p_m};
-}
-
-// Predicted position of a row's target through lib, tracker frame [m].
-Vector3 predicted(const Arm<double>& arm, const Registration& r, const Dataset& data, const Measurement& row) {
-  Pose<double> pose{};
-  if (forward(arm, row.q.data(), pose) != Status::ok) {
-    throw InputError(data.path, row.line, 0, "A joint is outside the library's range.");
-  }
-  return transform(compose(r.tracker_T_base, frame_of(pose)), r.flange_p_m[row.target]);
-}
 
 double distance(const Vector3& a, const Vector3& b) { return std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]); }
 
@@ -123,7 +58,7 @@ void run(const Arguments& arguments) {
   if (!robot.tracker_T_base && !arguments.refit_base) {
     detail("The blob has no base frame: the measurements are taken to be in the robot's base frame.");
   }
-  const Registration r = registration(arguments, robot, data);
+  const Registration r = registration(robot, data, arguments.refit_base, arguments.refit_tool);
   std::vector<double> all;
   std::vector<std::vector<double>> by_target(data.targets.size());
   for (const Measurement& row : data.rows) {
@@ -135,6 +70,7 @@ void run(const Arguments& arguments) {
   const Statistics total = statistics(all);
 
   std::string broken;
+  const Acceptance acceptance = accept(arguments.acceptance, blob.arm, r, data, arguments.refit_base, arguments.refit_tool);
   const auto hold = [&](const char* what, double value, const std::optional<double>& limit) {
     if (!limit || value <= *limit) return;
     char text[120];
@@ -143,6 +79,8 @@ void run(const Arguments& arguments) {
   };
   hold("mean", total.mean, arguments.max_mean_mm);
   hold("largest", total.max, arguments.max_max_mm);
+
+  broken += acceptance.broken;
 
   if (arguments.json) {
     nlohmann::ordered_json json = figures_json(total);
@@ -154,6 +92,7 @@ void run(const Arguments& arguments) {
     }
     json["base"] = arguments.refit_base ? "refitted" : "blob";
     json["tool"] = arguments.refit_tool ? "refitted" : "blob";
+    json.update(acceptance.json);
     json["passed"] = broken.empty();
     std::fputs((json.dump(2) + '\n').c_str(), stdout);
   } else {
@@ -163,6 +102,7 @@ void run(const Arguments& arguments) {
       print_line("target " + data.targets[k], statistics(by_target[k]));
     }
   }
+  if (!arguments.json) std::fputs(acceptance.text.c_str(), stdout);
   std::fflush(stdout);
   if (!broken.empty()) throw Refusal(broken.substr(0, broken.size() - 1));
 }
@@ -180,6 +120,7 @@ void add_verify(CLI::App& app) {
       ->check(CLI::NonNegativeNumber);
   command->add_option("--max-max", arguments->max_max_mm, "Exit status 1 if the largest error is larger [mm]")
       ->check(CLI::NonNegativeNumber);
+  arguments->acceptance.add_to(*command);
   command->add_flag("--json", arguments->json, "Print the figures as JSON");
   command->footer("Example:\n  mdhcal verify result/calibration.blob check.csv --max-mean 0.1 --max-max 0.3");
   command->callback([arguments] { run(*arguments); });
