@@ -40,7 +40,7 @@ void write_plain(const fs::path& path, std::string_view bytes) {
 void remove_leftovers(const fs::path& destination) {
   const std::string prefix = '.' + destination.filename().string() + std::string(mark);
   std::error_code ignored;
-  for (const auto& entry : fs::directory_iterator(destination.parent_path(), ignored)) {
+  for (const auto& entry : fs::directory_iterator(fs::absolute(destination).parent_path(), ignored)) {
     const std::string name = entry.path().filename().string();
     if (!name.starts_with(prefix)) continue;
     const std::string digits = name.substr(prefix.size());
@@ -83,6 +83,7 @@ void write_file(const fs::path& path, std::string_view bytes) {
     write_plain(path, bytes);
     return;
   }
+  remove_leftovers(path);
   const fs::path partial = partial_name(path);
   try {
     write_plain(partial, bytes);

@@ -119,4 +119,15 @@ TEST_F(Folder, AFileIsReplacedWhole) {
   EXPECT_EQ(entries(), 2);
 }
 
+TEST_F(Folder, AFileIsWrittenWithoutWhatAKilledRunLeft) {
+  const pid_t gone = fork();
+  ASSERT_GE(gone, 0);
+  if (gone == 0) _exit(0);
+  ASSERT_EQ(waitpid(gone, nullptr, 0), gone);
+  std::ofstream(top_ / (".a.txt.mdhcal-partial-" + std::to_string(gone))) << "half";
+  mdhcal::offline::write_file(top_ / "a.txt", "whole");
+  EXPECT_EQ(read(top_ / "a.txt"), "whole");
+  EXPECT_EQ(entries(), 1);
+}
+
 }  // namespace
