@@ -80,7 +80,7 @@ constexpr int bursts_at_an_offset = 64;
 #endif
 class Bursts : public testing::TestWithParam<std::uint32_t> {};
 TEST_P(Bursts, AreRefusedAtEveryOffset) { refuse_bursts(4 * thinning, bursts_at_an_offset, GetParam()); }
-INSTANTIATE_TEST_SUITE_P(Damage, Bursts, testing::Range(0U, 4U));
+INSTANTIATE_TEST_SUITE_P(Damage, Bursts, testing::Range<std::uint32_t>(0, 4));
 
 }  // namespace
 }  // namespace mdhcal::test
