@@ -35,6 +35,9 @@ def short(name, preset):
 def costs(target):
     environment = {**os.environ, "MDHCAL_QEMU_OPTIONS": "-icount shift=10,sleep=off"}
     output = run(ROOT / "port/cortex_m/run.sh", MACHINES[target.preset], target.build / "bin/footprint", env=environment)
+    # QEMU ends with status 0 when it is terminated from outside.
+    if "complete" not in output.splitlines():
+        raise SystemExit(f"{target.preset}: the measurement was cut off; the last line was {output.splitlines()[-1:]}")
     return [line.split()[1:] for line in output.splitlines() if line.startswith("cost ")]
 
 

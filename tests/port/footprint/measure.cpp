@@ -265,4 +265,5 @@ int main() {
 #endif
   measure_solutions<float>();
   measure_blob();
+  std::printf("complete\n");
 }
