@@ -141,13 +141,13 @@ extern "C" {
 using namespace mdhcal;
 
 std::int32_t C(load)(C(model)* model, std::size_t model_size, std::uint32_t abi_version, const std::uint8_t* blob,
-                     std::size_t blob_size, const mdhcal_demands* demands) {
+                     std::size_t blob_bytes, const mdhcal_demands* demands) {
   if (model == nullptr || blob == nullptr || model_size != sizeof *model || abi_version != MDHCAL_ABI_VERSION) {
     return refused;
   }
   CModel loaded;
   loaded.mark = model_mark;
-  const Status status = load(blob, blob_size, demands, loaded);
+  const Status status = load(blob, blob_bytes, demands, loaded);
   if (status == Status::ok || status == Status::self_test_tolerance) std::memcpy(model, &loaded, sizeof loaded);
   return number(status);
 }
