@@ -56,8 +56,8 @@ inline void read_link(const Arm<Real>& arm, std::int32_t i, const Real* q, LinkT
   const Real coordinate = joint_coordinate(arm, i, q);
   const bool sliding = slides(arm, i);
   const Real theta = sliding ? link.theta_rad : coordinate + link.theta_rad;
-  sin_cos_inline(theta, t.sine, t.cosine);
   t.d = sliding ? coordinate + link.d_m : link.d_m;
+  sin_cos_inline(theta, t.sine, t.cosine);
   t.sin_alpha = link.sin_alpha;
   t.cos_alpha = link.cos_alpha;
   t.a = link.a_m;
@@ -108,7 +108,7 @@ constexpr Frame<Real> identity{{1, 0, 0, 0, 1, 0, 0, 0, 1}, {0, 0, 0}};
 
 bool readings_valid(const Arm<Real>& arm, const Real* q) noexcept {
   for (std::int32_t i = 0; i < arm.joint_count; ++i) {
-    if (!(q[i] >= -reading_bound && q[i] <= reading_bound)) return false;
+    if (!(magnitude(q[i]) <= reading_bound)) return false;
   }
   return true;
 }
@@ -118,7 +118,7 @@ void evaluate(const Arm<Real>& arm, const Real* q, Frame<Real>& base_T_flange) n
   Real axis[3];
   first_link(arm, q, frame, axis);
   for (std::int32_t i = 1; i < arm.joint_count; ++i) append_link(arm, i, q, frame, axis);
-  base_T_flange = multiply(frame, arm.last_T_flange);
+  multiply(frame, arm.last_T_flange, base_T_flange);
 }
 
 void evaluate(const Arm<Real>& arm, const Real* q, Frame<Real>& base_T_flange, Jacobian<Real>& coordinates) noexcept {
@@ -131,7 +131,7 @@ void evaluate(const Arm<Real>& arm, const Real* q, Frame<Real>& base_T_flange, J
     append_link(arm, i, q, frame, column + 3);
     for (int k = 0; k < 3; ++k) column[k] = frame.position_m[k];
   }
-  base_T_flange = multiply(frame, arm.last_T_flange);
+  multiply(frame, arm.last_T_flange, base_T_flange);
   for (std::int32_t i = 0; i < arm.joint_count; ++i) {
     Real* column = coordinates.column[i];
     Real* z = column + 3;
@@ -198,7 +198,7 @@ Status link_frames(const Arm<Real>& arm, const Real* q, Frame<Real>* frames) noe
     frames[i + 1] = frames[i];
     append_link(arm, i, q, frames[i + 1], axis);
   }
-  frames[arm.joint_count + 1] = multiply(frames[arm.joint_count], arm.last_T_flange);
+  multiply(frames[arm.joint_count], arm.last_T_flange, frames[arm.joint_count + 1]);
   return Status::ok;
 }
 

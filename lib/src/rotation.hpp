@@ -20,18 +20,28 @@ static inline Real square_root(Real x) {
   }
 }
 
-/// a_T_c = a_T_b b_T_c
-static inline Frame<Real> multiply(const Frame<Real>& a, const Frame<Real>& b) {
-  Frame<Real> c;
+static inline Real magnitude(Real x) {
+  if constexpr (sizeof(Real) == sizeof(double)) {
+    return static_cast<Real>(__builtin_fabs(static_cast<double>(x)));
+  } else {
+    return static_cast<Real>(__builtin_fabsf(static_cast<float>(x)));
+  }
+}
+
+/// a_T_c = a_T_b b_T_c, into a place apart from both.
+static inline void multiply(const Frame<Real>& a, const Frame<Real>& b, Frame<Real>& c) {
+  const Frame<Real> right = b;
   for (int row = 0; row < 3; ++row) {
     const Real* r = a.rotation + 3 * row;
-    for (int col = 0; col < 3; ++col) {
-      c.rotation[3 * row + col] = r[0] * b.rotation[col] + r[1] * b.rotation[3 + col] + r[2] * b.rotation[6 + col];
-    }
-    c.position_m[row] =
-        a.position_m[row] + (r[0] * b.position_m[0] + r[1] * b.position_m[1] + r[2] * b.position_m[2]);
+    Real* to = c.rotation + 3 * row;
+    const Real* m = right.rotation;
+    const Real* p = right.position_m;
+    const Real x = r[0], y = r[1], z = r[2];
+    to[0] = x * m[0] + y * m[3] + z * m[6];
+    to[1] = x * m[1] + y * m[4] + z * m[7];
+    to[2] = x * m[2] + y * m[5] + z * m[8];
+    c.position_m[row] = a.position_m[row] + (x * p[0] + y * p[1] + z * p[2]);
   }
-  return c;
 }
 
 /// The pose of a frame. The quaternion comes from the largest of the four squared components, so that no
@@ -67,8 +77,6 @@ static inline void to_pose(const Frame<Real>& frame, Pose<Real>& pose) {
   for (int k = 0; k < 4; ++k) pose.quaternion[k] = scale * q[k];
   for (int k = 0; k < 3; ++k) pose.position_m[k] = frame.position_m[k];
 }
-
-static inline Real magnitude(Real x) { return x < Real{0} ? -x : x; }
 
 static inline Real dot(const Real* a, const Real* b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 

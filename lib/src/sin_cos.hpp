@@ -2,6 +2,9 @@
 // Private to lib/src; include after real.hpp. The sine and cosine as inline code, for where a call would count.
 #pragma once
 
+#include <cstdint>
+#include <cstring>
+
 #include "real.hpp"
 #include "rotation.hpp"
 #include "trigonometry.hpp"
@@ -17,7 +20,8 @@ struct Constants;
 
 template <>
 struct Constants<double> {
-  static constexpr double near_quadrants = 64;
+  static constexpr double near_rad = 101.0;       // 64 quadrants
+  static constexpr double rounder = 0x1.8p+52;  // added and taken away, it leaves an integer
   static constexpr double near[3] = {0x1.921fb544p+0, 0x1.0b4611a6p-34, 0x1.3198a2e037073p-69};
   static constexpr double far[5] = {0x1.921fb544p+0, 0x1.0b4611a6p-34, 0x1.3198a2ep-69, 0x1.b839a252049c1p-104, 0};
   static constexpr double sine[6] = {-0x1.5555555555555p-3,  0x1.1111111110bb1p-7,  -0x1.a01a019e8357dp-13,
@@ -37,7 +41,8 @@ struct Constants<double> {
 
 template <>
 struct Constants<float> {
-  static constexpr float near_quadrants = 16;
+  static constexpr float near_rad = 25.875F;  // 16 quadrants
+  static constexpr float rounder = 0x1.8p+23F;
   static constexpr float near[3] = {0x1.921fap+0F, 0x1.54442p-20F, 0x1.a308d4p-41F};
   static constexpr float far[5] = {0x1.921p+0F, 0x1.f6ap-13F, 0x1.11p-26F, 0x1.68cp-39F, 0x1.1a6264p-54F};
   static constexpr float sine[4] = {-0x1.555556p-3F, 0x1.11110ep-7F, -0x1.a013a6p-13F, 0x1.6dbdd2p-19F};
@@ -81,10 +86,47 @@ inline Pair exact_product(Real a, Real b) {
   return {product, ((a_high * b_high - product) + a_high * b_low + a_low * b_high) + a_low * b_low};
 }
 
-// x - quadrants pi/2 for many quadrants: every product is exact, and every sum but the last keeps its rounding.
-[[gnu::noinline]] Pair reduce_far(Real x, std::int32_t quadrants) {
-  const Real low_part = static_cast<Real>(quadrants % 512);
-  const Real high_part = static_cast<Real>(quadrants - quadrants % 512);
+// An angle in its quadrant, of which the two lowest bits count, and what is left of it.
+struct Reduced {
+  Pair rest;
+  std::uint32_t quadrant;
+};
+
+// The integer nearest to x, ties to even, for |x| < 2^21: it stands in the lowest bits of the sum.
+inline Real nearest(Real x, std::uint32_t& bits) {
+  const Real sum = x + Trig::rounder;
+  if constexpr (sizeof(Real) == sizeof(std::uint64_t)) {
+    std::uint64_t whole = 0;
+    std::memcpy(&whole, &sum, sizeof whole);
+    bits = static_cast<std::uint32_t>(whole);
+  } else {
+    std::memcpy(&bits, &sum, sizeof bits);
+  }
+  return sum - Trig::rounder;
+}
+
+constexpr Real quadrants_per_rad = Real(0x1.45f306dc9c883p-1);
+
+// Of few quadrants. The first difference is exact and a multiple of the second product's last bit, so that Dekker's
+// sum of the two (1971) loses nothing, whichever is the larger (Boldo, Graillat, Muller 2017).
+inline Reduced reduce_near(Real x) {
+  Reduced y;
+  const Real count = nearest(x * quadrants_per_rad, y.quadrant);
+  const Real first = x - count * Trig::near[0];
+  const Real second = count * Trig::near[1];
+  y.rest.high = first - second;
+  y.rest.low = ((first - y.rest.high) - second) - count * Trig::near[2];
+  return y;
+}
+
+// Of many quadrants: every product is exact, and every sum but the last keeps its rounding. Out of range: NaN.
+[[gnu::noinline]] Reduced reduce_far(Real x) {
+  constexpr Real bound = static_cast<Real>(max_sin_cos_rad);
+  if (!(magnitude(x) <= bound)) return {{static_cast<Real>(__builtin_nanf("")), 0}, 0};
+  std::uint32_t quadrant = 0;
+  const std::int32_t count = static_cast<std::int32_t>(nearest(x * quadrants_per_rad, quadrant));
+  const Real low_part = static_cast<Real>(count % 512);
+  const Real high_part = static_cast<Real>(count - count % 512);
   Real high = x;
   Real low = 0;
   for (const Real part : Trig::far) {
@@ -93,36 +135,23 @@ inline Pair exact_product(Real a, Real b) {
     high = second.high;
     low += first.low + second.low;
   }
-  return {high, low};
+  return {{high, low}, quadrant};
 }
 
 /// sin_cos() as inline code.
-inline void sin_cos_inline(Real angle_rad, Real& sine, Real& cosine) {
-  constexpr Real bound = static_cast<Real>(max_sin_cos_rad);
-  if (!(angle_rad >= -bound && angle_rad <= bound)) {
-    sine = cosine = static_cast<Real>(__builtin_nanf(""));
-    return;
-  }
-  const Real turns = angle_rad * Real(0x1.45f306dc9c883p-1);
-  const std::int32_t quadrant = static_cast<std::int32_t>(turns < Real{0} ? turns - Real(0.5) : turns + Real(0.5));
-  const Real count = static_cast<Real>(quadrant);
-  Pair y;
-  if (count <= Trig::near_quadrants && count >= -Trig::near_quadrants) {
-    y = exact_sum(angle_rad - count * Trig::near[0], -(count * Trig::near[1]));
-    y.low -= count * Trig::near[2];
-  } else {
-    y = reduce_far(angle_rad, quadrant);
-  }
-  const Real z = y.high * y.high;
+[[gnu::always_inline]] inline void sin_cos_inline(Real angle_rad, Real& sine, Real& cosine) {
+  const Reduced y = magnitude(angle_rad) <= Trig::near_rad ? reduce_near(angle_rad) : reduce_far(angle_rad);
+  const Real high = y.rest.high;
+  const Real z = high * high;
   const Real half = Real(0.5) * z;
   const Real rest = Real{1} - half;
-  const Real s = y.high + (y.low * rest + y.high * z * polynomial(Trig::sine, z));
-  const Real c = rest + (((Real{1} - rest) - half) + (z * z * polynomial(Trig::cosine, z) - y.high * y.low));
-  const bool odd = (quadrant & 1) != 0;
+  const Real s = high + (y.rest.low * rest + high * z * polynomial(Trig::sine, z));
+  const Real c = rest + (((Real{1} - rest) - half) + (z * z * polynomial(Trig::cosine, z) - y.rest.low * high));
+  const bool odd = (y.quadrant & 1U) != 0;
   const Real sine_size = odd ? c : s;
   const Real cosine_size = odd ? s : c;
-  sine = (quadrant & 2) != 0 ? -sine_size : sine_size;
-  cosine = ((quadrant + 1) & 2) != 0 ? -cosine_size : cosine_size;
+  sine = (y.quadrant & 2U) != 0 ? -sine_size : sine_size;
+  cosine = ((y.quadrant + 1U) & 2U) != 0 ? -cosine_size : cosine_size;
 }
 
 }  // namespace
