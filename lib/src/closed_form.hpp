@@ -115,13 +115,47 @@ inline void read_screws(const Arm<Real>& arm, Screws& screws) {
 struct StartingValues {
   std::int32_t count;      ///< 0 ... 8
   Real coordinates[8][6];
-  Real smallest;           ///< smallest half difference of two roots met on the way: small near a singularity [rad]
-  Real wrist_smallest;     ///< that of the fifth joint
+  Real smallest;           ///< smallest half difference of two roots of joints 1 and 3: small near a fold [rad]
+  Real wrist_smallest;     ///< that of joint 5: small near a straight wrist [rad]
+  Real base_radius_m;      ///< how far the wrist is from axis 1 [m]
 };
 
-/// `turn` is added to joint 6 and taken back by the joints before it, as far as a straight wrist allows: there the pose
-/// alone does not say where joint 6 is.
-inline void closed_form(const Screws& s, const Frame<Real>& target, Real spread, Real turn, StartingValues& values) {
+/// How starting values depart from the pose's own, where the pose alone does not say where a joint is.
+struct Departure {
+  Real spread;      ///< least half difference of two roots [rad]
+  Real base_turn;   ///< added to joint 1 [rad]
+  Real wrist_turn;  ///< added to joint 6 and taken back by those before it, as far as a straight wrist allows [rad]
+};
+
+/// Both values of joint 3 that bring p, fixed beyond it, as far from axis 2 as `across` is, with those of joint 2 that
+/// turn it there (Paden, Kahan: third and first subproblem).
+struct Elbow {
+  Real second[2], third[2];
+};
+
+inline Elbow bend_elbow(const Screws& s, const Vector& p, const Vector& across, Real spread, StartingValues& values) {
+  const Vector q = s.point[1] - s.point[2];
+  Elbow elbow;
+  const Real distance = Real(0.5) * (inner(p, p) + inner(q, q) - inner(across, across));
+  const Real half = angles_to_plane(q, s.axis[2], p, distance, spread, elbow.third);
+  if (half < values.smallest) values.smallest = half;
+  for (int i = 0; i < 2; ++i) {
+    elbow.second[i] = angle_between(s.axis[1], turned(s.axis[2], elbow.third[i], p) - q, across);
+  }
+  return elbow;
+}
+
+inline void add_value(StartingValues& values, Real c1, Real c2, Real c3, Real c4, Real c5, Real c6) {
+  Real* c = values.coordinates[values.count++];
+  c[0] = c1;
+  c[1] = c2;
+  c[2] = c3;
+  c[3] = c4;
+  c[4] = c5;
+  c[5] = c6;
+}
+
+inline void closed_form(const Screws& s, const Frame<Real>& target, const Departure& departure, StartingValues& values) {
   const Vector* k = s.axis;
   const Vector* o = s.point;
   // g = target zero^-1: the motion of all six turns.
@@ -133,70 +167,48 @@ inline void closed_form(const Screws& s, const Frame<Real>& target, Real spread,
   const Vector moved = Vector{target.position_m[0], target.position_m[1], target.position_m[2]} +
                        row_of(g, s.meet - flange);
   const Real gt[9] = {g[0], g[3], g[6], g[1], g[4], g[7], g[2], g[5], g[8]};
-  const bool three = s.family == Family::parallel;
   const Vector h = k[1];
-  values.smallest = Real{4};
-  values.wrist_smallest = Real{4};
+  const Real spread = departure.spread;
   values.count = 0;
+  values.wrist_smallest = Real{4};
+  values.base_radius_m = line_distance(moved, o[0], k[0]);
   Real first[2];
   // Turns about axes along h leave the height along h as it is, so joint 1 alone sets it.
-  Real half = angles_to_plane(h, Real{-1} * k[0], moved - o[0], inner(h, s.meet - o[0]), spread, first);
-  if (half < values.smallest) values.smallest = half;
-  for (const Real c1 : first) {
+  values.smallest = angles_to_plane(h, Real{-1} * k[0], moved - o[0], inner(h, s.meet - o[0]), spread, first);
+  for (const Real root : first) {
+    const Real c1 = root + departure.base_turn;
     const Vector lowered = o[0] + turned(k[0], -c1, moved - o[0]);
-    if (three) {
+    if (s.family == Family::parallel) {
       const Vector h_flange = row_of(gt, turned(k[0], c1, h));
       Real fifth[2];
-      half = angles_to_plane(h, k[4], k[5], inner(h_flange, k[5]), spread, fifth);
+      const Real half = angles_to_plane(h, k[4], k[5], inner(h_flange, k[5]), spread, fifth);
       if (half < values.wrist_smallest) values.wrist_smallest = half;
       for (const Real c5 : fifth) {
-        const Real c6 = turn - angle_between(k[5], turned(k[4], -c5, h), h_flange);
+        const Real c6 = departure.wrist_turn - angle_between(k[5], turned(k[4], -c5, h), h_flange);
         // The sum of turns 2, 3, 4 from what it does to axis 5, which is across h.
         const Vector carried = turned(k[0], -c1, row_of(g, turned(k[5], -c6, k[4])));
         const Real sum = angle_between(h, k[4], carried);
-        const Vector elbow = lowered - turned(h, sum, s.meet - o[3]);
-        const Vector p = o[3] - o[2];
-        const Vector q = o[1] - o[2];
-        const Vector across = elbow - o[1];
-        Real third[2];
-        half = angles_to_plane(q, k[2], p, Real(0.5) * (inner(p, p) + inner(q, q) - inner(across, across)), spread, third);
-        if (half < values.smallest) values.smallest = half;
-        for (const Real c3 : third) {
-          const Real c2 = angle_between(k[1], turned(k[2], c3, p) - q, across);
-          Real* c = values.coordinates[values.count++];
-          c[0] = c1;
-          c[1] = c2;
-          c[2] = c3;
-          c[3] = sum - c2 - c3;
-          c[4] = c5;
-          c[5] = c6;
+        const Elbow elbow = bend_elbow(s, o[3] - o[2], lowered - turned(h, sum, s.meet - o[3]) - o[1], spread, values);
+        for (int i = 0; i < 2; ++i) {
+          add_value(values, c1, elbow.second[i], elbow.third[i], sum - elbow.second[i] - elbow.third[i], c5, c6);
         }
       }
-    } else {
-      const Vector p = s.meet - o[2];
-      const Vector q = o[1] - o[2];
-      const Vector across = lowered - o[1];
-      Real third[2];
-      half = angles_to_plane(q, k[2], p, Real(0.5) * (inner(p, p) + inner(q, q) - inner(across, across)), spread, third);
-      if (half < values.smallest) values.smallest = half;
-      for (const Real c3 : third) {
-        const Real c2 = angle_between(k[1], turned(k[2], c3, p) - q, across);
-        const Vector sixth = turned(k[2], -c3, turned(k[1], -c2, turned(k[0], -c1, row_of(g, k[5]))));
-        const Vector fourth = row_of(gt, turned(k[0], c1, turned(k[1], c2, turned(k[2], c3, k[3]))));
-        Real fifth[2];
-        half = angles_to_plane(k[3], k[4], k[5], inner(k[3], sixth), spread, fifth);
-        if (half < values.wrist_smallest) values.wrist_smallest = half;
-        for (const Real c5 : fifth) {
-          Real* c = values.coordinates[values.count++];
-          c[0] = c1;
-          c[1] = c2;
-          c[2] = c3;
-          const Vector bent = turned(k[4], c5, k[5]);
-          const Real back = inner(k[3], bent) < Real{0} ? turn : -turn;
-          c[3] = back + angle_between(k[3], bent, sixth);
-          c[4] = c5;
-          c[5] = turn - angle_between(k[5], turned(k[4], -c5, k[3]), fourth);
-        }
+      continue;
+    }
+    const Elbow elbow = bend_elbow(s, s.meet - o[2], lowered - o[1], spread, values);
+    for (int i = 0; i < 2; ++i) {
+      const Real c2 = elbow.second[i];
+      const Real c3 = elbow.third[i];
+      const Vector sixth = turned(k[2], -c3, turned(k[1], -c2, turned(k[0], -c1, row_of(g, k[5]))));
+      const Vector fourth = row_of(gt, turned(k[0], c1, turned(k[1], c2, turned(k[2], c3, k[3]))));
+      Real fifth[2];
+      const Real half = angles_to_plane(k[3], k[4], k[5], inner(k[3], sixth), spread, fifth);
+      if (half < values.wrist_smallest) values.wrist_smallest = half;
+      for (const Real c5 : fifth) {
+        const Vector bent = turned(k[4], c5, k[5]);
+        const Real back = inner(k[3], bent) < Real{0} ? departure.wrist_turn : -departure.wrist_turn;
+        const Real c6 = departure.wrist_turn - angle_between(k[5], turned(k[4], -c5, k[3]), fourth);
+        add_value(values, c1, c2, c3, back + angle_between(k[3], bent, sixth), c5, c6);
       }
     }
   }

@@ -4,8 +4,8 @@
 #include "real.hpp"
 // The tick's parts see Real.
 #include "constrained_tick.hpp"
-#include "refine.hpp"
 #include "regular_tick.hpp"
+#include "tick_valid.hpp"
 
 namespace mdhcal {
 
@@ -79,28 +79,6 @@ Real length_unit(const Arm<Real>& arm) { return arm.reach_m > Real(1e-6) ? arm.r
 
 bool tick_valid(const Arm<Real>& arm, const TickOptions<Real>& options, const Pose<Real>& target) noexcept {
   return valid(options, arm.joint_count) && valid(target);
-}
-
-bool refine(const Arm<Real>& arm, const TickOptions<Real>& options, const Frame<Real>& target, Real* q) noexcept {
-  TickOptions<Real> free = options;
-  free.posture_gain = 0;
-  free.max_iterations = max_tick_iterations;
-  TickState state;
-  state.arm = &arm;
-  state.options = &free;
-  state.target = target;
-  state.length_m = length_unit(arm);
-  for (std::int32_t j = 0; j < arm.joint_count; ++j) {
-    state.q[j] = q[j];
-    state.low[j] = -largest;
-    state.high[j] = largest;
-  }
-  state.evaluations = 0;
-  bool is_met = arm.joint_count == 6 && options.task == Task::pose && regular_tick(state);
-  // A starting value may be far: most of the error has to go before steps stop halving.
-  if (!is_met) is_met = attempt(state, Real{1}, Real{0}, fold_curvature, Real(0.05), 24, max_tick_iterations, false).met;
-  for (std::int32_t j = 0; j < arm.joint_count; ++j) q[j] = state.q[j];
-  return is_met;
 }
 
 TickOptions<Real> default_tick_options(const Arm<Real>& arm) noexcept {

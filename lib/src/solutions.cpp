@@ -3,9 +3,9 @@
 
 #include "chain.hpp"
 #include "closed_form.hpp"
-#include "pose_error.hpp"
+#include "levenberg.hpp"
 #include "real.hpp"
-#include "refine.hpp"
+#include "tick_valid.hpp"
 
 namespace mdhcal {
 
@@ -16,10 +16,8 @@ constexpr Real full_turn = Real(6.28318530717958647692);
 constexpr Real same_solution = sizeof(Real) == sizeof(double) ? Real(1e-3) : Real(5e-3);
 
 struct Search {
-  const Arm<Real>* arm;
-  const SolutionOptions<Real>* options;
   const Real* posture;
-  Frame<Real> target;
+  Refinement how;
   std::uint32_t periodic_mask;  ///< joints for which a full turn of the reading changes nothing
 };
 
@@ -45,7 +43,7 @@ std::uint32_t periodic_joints(const Arm<Real>& arm) {
 
 // Moves each periodic joint by full turns to the allowed one nearest to the posture. Returns whether all limits hold.
 bool choose_turns(const Search& search, Real* q) {
-  const Arm<Real>& arm = *search.arm;
+  const Arm<Real>& arm = *search.how.arm;
   for (std::int32_t j = 0; j < arm.joint_count; ++j) {
     const bool has_min = bit(arm.min_mask, j);
     const bool has_max = bit(arm.max_mask, j);
@@ -62,10 +60,10 @@ bool choose_turns(const Search& search, Real* q) {
 
 Real joint_distance(const Search& search, const Real* a, const Real* b, bool modulo) {
   Real largest = 0;
-  for (std::int32_t j = 0; j < search.arm->joint_count; ++j) {
+  for (std::int32_t j = 0; j < search.how.arm->joint_count; ++j) {
     Real difference = a[j] - b[j];
     if (modulo && bit(search.periodic_mask, j)) difference -= full_turn * whole(difference / full_turn);
-    if (bit(search.arm->prismatic_mask, j) && search.arm->reach_m > Real(1e-6)) difference /= search.arm->reach_m;
+    if (bit(search.how.arm->prismatic_mask, j) && search.how.arm->reach_m > Real(1e-6)) difference /= search.how.arm->reach_m;
     if (magnitude(difference) > largest) largest = magnitude(difference);
   }
   return largest;
@@ -74,20 +72,20 @@ Real joint_distance(const Search& search, const Real* a, const Real* b, bool mod
 bool meets(const Search& search, const Real* q) {
   Frame<Real> frame;
   PoseError error;
-  evaluate(*search.arm, q, frame);
-  pose_error(search.target, frame, search.options->tick.task, error);
-  return error.position_m <= search.options->tick.position_tolerance_m &&
-         error.rotation_rad <= search.options->tick.rotation_tolerance_rad;
+  bool met = false;
+  evaluate(*search.how.arm, q, frame);
+  squared_error(search.how, frame, error, met);
+  return met;
 }
 
 // Refines a starting value and adds what it leads to, if that is new; a full list keeps the nearest. The list is
 // sorted at all times.
 void consider(const Search& search, Real* q, Solutions<Real>& found) {
-  const std::int32_t joints = search.arm->joint_count;
-  if (!refine(*search.arm, search.options->tick, search.target, q)) return;
+  const std::int32_t joints = search.how.arm->joint_count;
+  if (!refine(search.how, q)) return;
   if (!choose_turns(search, q)) return;
   // Full turns are added in rounded numbers.
-  if (!meets(search, q)) return;
+  if (!readings_valid(*search.how.arm, q) || !meets(search, q)) return;
   for (std::int32_t k = 0; k < found.count; ++k) {
     if (joint_distance(search, q, found.q[k], true) < same_solution) return;
   }
@@ -141,34 +139,49 @@ bool readings_of(const Arm<Real>& arm, const Real* coordinates, Real* q) {
 
 // Roots that coincide within this are also tried apart [rad].
 constexpr Real nearly_double = Real(0.35);
-// With a nearly straight wrist joint 6 may be anywhere as long as the joints before it make up for it: where the pose
-// is met depends on the arm's errors, so it is tried all around.
-constexpr int wrist_turns = 8;
+// With a nearly straight wrist joint 6 may be anywhere as long as the joints before it make up for it, and with the wrist
+// nearly on axis 1, within this part of the reach, joint 1 may: where the pose is met depends on the arm's errors, so it
+// is tried all around. Solutions lie in pairs close together there; so many values find nine of ten poses complete.
+constexpr int wrist_turns = 32;
+constexpr int base_turns = 64;
+constexpr Real near_axis = Real(0.05);
 
 void consider_coordinates(const Search& search, const Real* coordinates, Solutions<Real>& found) {
   Real q[max_joints] = {};
-  if (readings_of(*search.arm, coordinates, q)) consider(search, q, found);
+  if (readings_of(*search.how.arm, coordinates, q)) consider(search, q, found);
 }
 
-void try_closed_form(const Search& search, const Screws& screws, Solutions<Real>& found) {
-  constexpr Real spreads[3] = {Real{0}, Real(0.1), Real(0.3)};
+void try_departure(const Search& search, const Screws& screws, const Departure& departure, StartingValues& values,
+                   Solutions<Real>& found) {
+  closed_form(screws, search.how.target, departure, values);
+  for (std::int32_t k = 0; k < values.count; ++k) consider_coordinates(search, values.coordinates[k], found);
+}
+
+// The closed form's values; on both sides of folds; all around where a joint may be anywhere, with `first_only` only if
+// nothing was found before.
+void try_closed_form(const Search& search, const Screws& screws, bool first_only, Solutions<Real>& found) {
   StartingValues values;
-  for (const Real spread : spreads) {
-    closed_form(screws, search.target, spread, Real{0}, values);
-    for (std::int32_t k = 0; k < values.count; ++k) consider_coordinates(search, values.coordinates[k], found);
-    if (values.smallest > nearly_double && values.wrist_smallest > nearly_double) return;
+  try_departure(search, screws, {Real{0}, Real{0}, Real{0}}, values, found);
+  const bool straight = values.wrist_smallest < nearly_double;
+  const bool above = values.base_radius_m < near_axis * search.how.arm->reach_m;
+  if (straight || values.smallest < nearly_double) {
+    try_departure(search, screws, {Real(0.1), Real{0}, Real{0}}, values, found);
+    try_departure(search, screws, {Real(0.3), Real{0}, Real{0}}, values, found);
   }
-  if (values.wrist_smallest > nearly_double) return;
-  for (int turn = 1; turn < wrist_turns; ++turn) {
-    const Real angle = full_turn / static_cast<Real>(wrist_turns) * static_cast<Real>(turn);
-    closed_form(screws, search.target, Real(0.05), angle, values);
-    for (std::int32_t k = 0; k < values.count; ++k) consider_coordinates(search, values.coordinates[k], found);
+  if (first_only && found.count > 0) return;
+  for (int n = 1; straight && n < wrist_turns; ++n) {
+    const Real angle = full_turn / static_cast<Real>(wrist_turns) * static_cast<Real>(n);
+    try_departure(search, screws, {Real(0.01), Real{0}, angle}, values, found);
+  }
+  for (int n = 1; above && n < base_turns; ++n) {
+    const Real angle = full_turn / static_cast<Real>(base_turns) * static_cast<Real>(n);
+    try_departure(search, screws, {n % 2 == 0 ? Real(0.05) : Real(0.3), angle, Real{0}}, values, found);
   }
 }
 
 // Fixed pseudo-random joints (Marsaglia 2003, xorshift), within the limits or half a turn or the reach about the posture.
 void restart_joints(const Search& search, std::uint32_t& state, Real* q) {
-  const Arm<Real>& arm = *search.arm;
+  const Arm<Real>& arm = *search.how.arm;
   for (std::int32_t j = 0; j < arm.joint_count; ++j) {
     state ^= state << 13U;
     state ^= state >> 17U;
@@ -193,15 +206,30 @@ void try_restarts(const Search& search, std::int32_t restarts, bool first_only, 
   }
 }
 
+void search_all(const Search& search, std::int32_t restarts, bool first_only, Solutions<Real>& found) {
+  Screws screws;
+  read_screws(*search.how.arm, screws);
+  found.count = 0;
+  found.family = screws.family;
+  Real q[max_joints];
+  for (std::int32_t j = 0; j < search.how.arm->joint_count; ++j) q[j] = search.posture[j];
+  consider(search, q, found);
+  if (screws.family != Family::general && search.how.options->task == Task::pose) {
+    try_closed_form(search, screws, first_only, found);
+  }
+  try_restarts(search, restarts, first_only, found);
+}
+
 bool prepare(const Arm<Real>& arm, const SolutionOptions<Real>& options, const Pose<Real>& target, const Real* posture,
              Search& search) {
   if (!tick_valid(arm, options.tick, target) || !readings_valid(arm, posture)) return false;
   if (options.restarts < 0 || options.restarts > max_restarts) return false;
-  search.arm = &arm;
-  search.options = &options;
   search.posture = posture;
   search.periodic_mask = periodic_joints(arm);
-  to_frame(target, search.target);
+  search.how.arm = &arm;
+  search.how.options = &options.tick;
+  search.how.length_m = arm.reach_m > Real(1e-6) ? arm.reach_m : Real{1};
+  to_frame(target, search.how.target);
   return true;
 }
 
@@ -224,18 +252,7 @@ Status find_solutions(const Arm<Real>& arm, const SolutionOptions<Real>& options
                       const Real* posture, Solutions<Real>& solutions) noexcept {
   Search search;
   if (!prepare(arm, options, base_T_flange, posture, search)) return Status::bad_input;
-  Screws screws;
-  read_screws(arm, screws);
-  solutions.count = 0;
-  solutions.family = screws.family;
-  if (screws.family != Family::general && options.tick.task == Task::pose) {
-    try_closed_form(search, screws, solutions);
-  } else {
-    Real q[max_joints];
-    for (std::int32_t j = 0; j < arm.joint_count; ++j) q[j] = posture[j];
-    consider(search, q, solutions);
-  }
-  try_restarts(search, options.restarts, false, solutions);
+  search_all(search, options.restarts, false, solutions);
   return solutions.count > 0 ? Status::ok : Status::out_of_reach;
 }
 
@@ -243,18 +260,8 @@ Status cold_start(const Arm<Real>& arm, const SolutionOptions<Real>& options, co
                   Real* q) noexcept {
   Search search;
   if (!prepare(arm, options, base_T_flange, q, search)) return Status::bad_input;
-  Screws screws;
-  read_screws(arm, screws);
   Solutions<Real> found;
-  found.count = 0;
-  if (screws.family != Family::general && options.tick.task == Task::pose) {
-    try_closed_form(search, screws, found);
-  } else {
-    Real start[max_joints];
-    for (std::int32_t j = 0; j < arm.joint_count; ++j) start[j] = q[j];
-    consider(search, start, found);
-  }
-  try_restarts(search, options.restarts > 0 ? options.restarts : 100, true, found);
+  search_all(search, options.restarts > 0 ? options.restarts : 100, true, found);
   if (found.count == 0) return Status::out_of_reach;
   for (std::int32_t j = 0; j < arm.joint_count; ++j) q[j] = found.q[0][j];
   return Status::ok;

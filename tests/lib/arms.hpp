@@ -64,6 +64,27 @@ inline Geometry wrist_arm() {
                      {90, 0, 0, 0}, {-90, 0, 180, 0.1}});
 }
 
+/// A PUMA 560 (Craig 2005, Fig. 3.21): a spherical wrist, no offset at the shoulder in the plane of the arm.
+inline Geometry puma560() {
+  return from_table({{0, 0, 0, 0}, {-90, 0, 0, 0}, {0, 0.4318, 0, 0.1244}, {-90, 0.0203, 0, 0.4318}, {90, 0, 0, 0},
+                     {-90, 0, 0, 0}});
+}
+
+/// Six turning joints of no family: twists within 30 degrees of a right angle, lengths and offsets up to 0.5 m.
+inline Geometry random_arm(Random& random) {
+  Geometry g{};
+  g.joint_count = 6;
+  for (int i = 0; i < 6; ++i) {
+    g.link[i].alpha_rad = (random.symmetric(1) < 0 ? -1 : 1) * random.uniform(60 * deg, 120 * deg);
+    g.link[i].a_m = random.uniform(0.05, 0.5);
+    g.link[i].theta_rad = random.symmetric(pi);
+    g.link[i].d_m = random.symmetric(0.5);
+    g.joint[i].sign = 1;
+  }
+  g.last_T_flange.quaternion[0] = 1;
+  return g;
+}
+
 /// A seven-joint arm with spherical shoulder and wrist.
 inline Geometry seven_joint_arm() {
   return from_table({{0, 0, 0, 0.36}, {-90, 0, 0, 0}, {90, 0, 0, 0.42}, {90, 0, 0, 0}, {-90, 0, 0, 0.4},
