@@ -1,7 +1,6 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
-# test.sh [PRESET...]: installs what is missing, builds and runs every test of the presets named, or of all of them but
-# `fuzz`, which takes a build of its own with sanitizers and is named where it is wanted. With
+# test.sh [PRESET...]: installs what is missing, builds and runs every test of the presets named, or of all of them. With
 # CI=true warnings are errors, and tests whose data is missing fail.
 set -euo pipefail
 cd "$(dirname "$0")/.."
@@ -9,7 +8,7 @@ cd "$(dirname "$0")/.."
 presets=("$@")
 if [[ ${#presets[@]} -eq 0 ]]; then
   bash cmake/setup.sh test cross  # CMake itself may be among what is missing
-  mapfile -t presets < <(cmake --list-presets=test | sed -n 's/^ *"\([^"]*\)".*/\1/p' | grep -vx fuzz)
+  mapfile -t presets < <(cmake --list-presets=test | sed -n 's/^ *"\([^"]*\)".*/\1/p')
 elif [[ "${presets[*]}" == host ]]; then
   bash cmake/setup.sh test
 else

@@ -24,6 +24,6 @@ file(RELATIVE_PATH prefix_from_pc "/${CMAKE_INSTALL_LIBDIR}/pkgconfig" "/")
 configure_file("${packaging}/mdhcal.pc.in" "${PROJECT_BINARY_DIR}/mdhcal.pc" @ONLY)
 install(FILES "${PROJECT_BINARY_DIR}/mdhcal.pc" DESTINATION "${CMAKE_INSTALL_LIBDIR}/pkgconfig" COMPONENT library)
 
-if(MDHCAL_OFFLINE)
+if(TARGET mdhcal)
   install(TARGETS mdhcal RUNTIME DESTINATION "${CMAKE_INSTALL_BINDIR}" COMPONENT tool)
 endif()

@@ -18,6 +18,9 @@ namespace mdhcal {
 
 namespace at = blob_layout;
 
+double max_deviation_m() noexcept { return MDHCAL_MAX_DEVIATION_M; }
+double max_deviation_rad() noexcept { return MDHCAL_MAX_DEVIATION_RAD; }
+
 namespace {
 
 constexpr double max_lambda = 1e30;
@@ -192,11 +195,11 @@ Status check_values(const std::uint8_t* bytes) {
 }
 
 bool near(const Link& corrected, const Link& nominal) {
-  return within(corrected.alpha_rad - nominal.alpha_rad, MDHCAL_MAX_DEVIATION_RAD) &&
-         within(corrected.a_m - nominal.a_m, MDHCAL_MAX_DEVIATION_M) &&
-         within(corrected.theta_rad - nominal.theta_rad, MDHCAL_MAX_DEVIATION_RAD) &&
-         within(corrected.d_m - nominal.d_m, MDHCAL_MAX_DEVIATION_M) &&
-         within(corrected.beta_rad - nominal.beta_rad, MDHCAL_MAX_DEVIATION_RAD);
+  return within(corrected.alpha_rad - nominal.alpha_rad, max_deviation_rad()) &&
+         within(corrected.a_m - nominal.a_m, max_deviation_m()) &&
+         within(corrected.theta_rad - nominal.theta_rad, max_deviation_rad()) &&
+         within(corrected.d_m - nominal.d_m, max_deviation_m()) &&
+         within(corrected.beta_rad - nominal.beta_rad, max_deviation_rad());
 }
 
 Status check_geometry(const std::uint8_t* bytes) {

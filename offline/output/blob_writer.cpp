@@ -48,11 +48,11 @@ void check_deviation(const Robot& robot) {
                     " from its nominal value, expected at most " + std::to_string(bound * 1e3) + " " + unit +
                     ": a controller refuses such a blob.");
     };
-    hold("alpha", is.alpha_rad - was.alpha_rad, default_max_deviation_rad, "mrad");
-    hold("a", is.a_m - was.a_m, default_max_deviation_m, "mm");
-    hold("theta", is.theta_rad - was.theta_rad, default_max_deviation_rad, "mrad");
-    hold("d", is.d_m - was.d_m, default_max_deviation_m, "mm");
-    hold("beta", is.beta_rad - was.beta_rad, default_max_deviation_rad, "mrad");
+    hold("alpha", is.alpha_rad - was.alpha_rad, max_deviation_rad(), "mrad");
+    hold("a", is.a_m - was.a_m, max_deviation_m(), "mm");
+    hold("theta", is.theta_rad - was.theta_rad, max_deviation_rad(), "mrad");
+    hold("d", is.d_m - was.d_m, max_deviation_m(), "mm");
+    hold("beta", is.beta_rad - was.beta_rad, max_deviation_rad(), "mrad");
   }
 }
 

@@ -4,8 +4,6 @@
 #include <initializer_list>
 #include <string_view>
 
-#include <toml++/toml.h>
-
 #include "offline/error.hpp"
 #include "offline/read_file.hpp"
 #include "offline/robot/convention.hpp"
@@ -19,13 +17,6 @@ namespace mdhcal::offline {
 namespace {
 
 std::string quoted(std::string_view text) { return '"' + std::string(text) + '"'; }
-
-// The parser's own words, without the full stop.
-std::string described(const toml::parse_error& error) {
-  std::string words(error.description());
-  while (!words.empty() && words.back() == '.') words.pop_back();
-  return words;
-}
 
 std::string kind_of(const toml::node& node) {
   switch (node.type()) {
@@ -42,21 +33,7 @@ std::string kind_of(const toml::node& node) {
 /// The reader: every method throws InputError at the place of the node that it looks at.
 class Reader {
  public:
-  Reader(const std::string& text, const std::string& path) : path_(path) {
-    const std::size_t nul = text.find('\0');
-    if (nul != std::string::npos) {
-      throw InputError(path, 1 + std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(nul), '\n'), 1,
-                       "Found a zero byte; expected a robot file (TOML text).");
-    }
-    refuse_stray_characters(text, path);
-    try {
-      root_ = toml::parse(text, path);
-    } catch (const toml::parse_error& error) {
-      throw InputError(path, static_cast<long>(error.source().begin.line),
-                       static_cast<long>(error.source().begin.column),
-                       "Not valid TOML: " + described(error) + "; expected a robot file in TOML.");
-    }
-  }
+  Reader(const std::string& text, const std::string& path) : path_(path), root_(parse_toml(text, path)) {}
 
   Robot read();
 

@@ -217,6 +217,19 @@ TEST(RobotFile, CharactersOutsideAsciiBelongInQuotesAndComments) {
   }
 }
 
+// toml++ assumes that these do not occur.
+TEST(RobotFile, MalformedBracketsAreRefusedWithTheirLine) {
+  const std::string link = "[[link]]\nalpha = 0\na = 0\nd = 1\ntheta = 0\n";
+  for (const std::string bad : {"[*[l", "[[=]]", "[.a]", "[ +1]", "[[ [a]]]", "[#", "[\n+= ", "[{a=1}]", "x = [[+1],}, 2]"}) {
+    try {
+      parse_robot(link + bad + "\n", "r.toml");
+      ADD_FAILURE() << bad;
+    } catch (const InputError& error) {
+      EXPECT_EQ(std::string(error.what()).rfind("r.toml:6:", 0), 0U) << error.what();
+    }
+  }
+}
+
 TEST(RobotFile, KeepsRoundNumbersRound) {
   const std::string written = write_robot(parse_robot("[[link]]\nalpha = 90\na = 425.0\nd = 89.159\ntheta = 30\n", "r.toml"));
   for (const char* line : {"alpha = 90.0\n", "a = 425.0\n", "d = 89.159\n", "theta = 30.0\n", "rxryrz = [0.0, 0.0, 0.0]\n"}) {

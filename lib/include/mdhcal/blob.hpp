@@ -14,9 +14,13 @@ namespace mdhcal {
 inline constexpr std::size_t blob_size = blob_layout::size;
 /// The most named target points.
 inline constexpr std::size_t max_targets = blob_layout::target_slots;
-/// How far a corrected parameter may be from its nominal, unless the library was compiled with other bounds.
+/// How far a corrected parameter may be from its nominal, unless the library was compiled with other bounds
+/// (MDHCAL_MAX_DEVIATION_M, MDHCAL_MAX_DEVIATION_RAD).
 inline constexpr double default_max_deviation_m = 0.05;
 inline constexpr double default_max_deviation_rad = 0.05;
+/// The bounds that this library was compiled with [m], [rad].
+double max_deviation_m() noexcept;
+double max_deviation_rad() noexcept;
 /// The most self-test vectors of one precision.
 inline constexpr std::size_t max_vectors = blob_layout::vector_slots;
 
@@ -110,8 +114,8 @@ struct DecodeOptions {
 /// Decodes a blob (docs/blob.md). Total: any bytes, any alignment, no partial result - the model is written whole, after
 /// every check, or not touched. Returns ok, or in this order of checks blob_size, blob_magic, blob_version, blob_size
 /// (stated), blob_layout, blob_crc, blob_unsigned, blob_signature, blob_counter, blob_reserved, blob_value,
-/// blob_deviation (a length of the corrected geometry over MDHCAL_MAX_DEVIATION_M from its nominal, or an angle over
-/// MDHCAL_MAX_DEVIATION_RAD; compiled into the library, the defaults above), blob_serial. An ok model's geometry passes check().
+/// blob_deviation (a length of the corrected geometry over max_deviation_m() from its nominal, or an angle over
+/// max_deviation_rad()), blob_serial. An ok model's geometry passes check().
 Status decode(const std::uint8_t* bytes, std::size_t size, const DecodeOptions& options, Model& model) noexcept;
 
 }  // namespace mdhcal
