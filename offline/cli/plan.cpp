@@ -9,6 +9,7 @@
 
 #include "offline/cli/commands.hpp"
 #include "offline/cli/messages.hpp"
+#include "offline/cli/progress.hpp"
 #include "offline/error.hpp"
 #include "offline/measure/joint_file.hpp"
 #include "offline/output/folder.hpp"
@@ -65,7 +66,7 @@ std::string joints_csv(const Plan& plan, const Geometry& geometry) {
     for (std::size_t i = 0; i < n; ++i) {
       char number[32];
       // A ten-thousandth of a degree and a tenth of a micrometre: what a controller takes.
-      std::snprintf(number, sizeof number, ",%.4f", 
+      std::snprintf(number, sizeof number, ",%.4f",
                     plan.poses[p][i] * (geometry.joint[i].kind == JointKind::revolute ? 1 / degree_rad : 1e3));
       text += number;
     }
@@ -117,7 +118,7 @@ void print_text(const Plan& plan) {
 
 void run(Arguments& arguments) {
   const Robot robot = read_robot(arguments.robot);
-  std::vector<Readings> candidates;
+  std::vector<Joints> candidates;
   if (!arguments.candidates.empty()) {
     const auto table = read_joint_file(arguments.candidates, robot.geometry);
     for (const std::string& note : table.notes) inform(note);
@@ -130,7 +131,10 @@ void run(Arguments& arguments) {
   options.setup.fit_tool = arguments.tool == "fit";
   if (!(arguments.noise_mm > 0)) throw InputError("Found --noise " + std::to_string(arguments.noise_mm) + "; expected a standard deviation above 0 mm.");
   options.setup.noise_mm = arguments.noise_mm;
-  const Plan plan = make_plan(robot, options, candidates);
+  const Plan plan = [&] {
+    Progress progress("plan", verbosity() != Verbosity::quiet);
+    return make_plan(robot, options, candidates, progress.callback());
+  }();
   write_file(arguments.output, joints_csv(plan, robot.geometry));
   if (arguments.json) {
     print_json(plan);

@@ -6,6 +6,8 @@
 #include <nlohmann/json.hpp>
 
 #include "offline/cli/commands.hpp"
+#include "offline/cli/messages.hpp"
+#include "offline/cli/progress.hpp"
 #include "offline/output/folder.hpp"
 #include "offline/simulate/family.hpp"
 #include "offline/simulate/measurement_text.hpp"
@@ -55,13 +57,17 @@ void run(Arguments arguments) {
   options.joint_noise_rad = arguments.joint_noise_deg * degree;
   options.outlier_m = arguments.outlier_mm * 1e-3;
   OutputFolder folder(arguments.directory, {"robot.toml", "measurements.csv", "test.csv", "truth.toml", "truth.json"});
-  const Simulation simulation = simulate(robot, options);
+  const Simulation simulation = [&] {
+    Progress progress("simulate", verbosity() != Verbosity::quiet);
+    return simulate(robot, options, progress.callback());
+  }();
   folder.write("robot.toml", write_robot(simulation.nominal));
   folder.write("measurements.csv", measurement_text(simulation.train, simulation.nominal));
   folder.write("test.csv", measurement_text(simulation.test, simulation.nominal));
   folder.write("truth.toml", write_robot(simulation.truth));
   folder.write("truth.json", truth_json(arguments, simulation));
   folder.commit();
+  inform("Written to " + arguments.directory + ".");
 }
 
 }  // namespace
@@ -96,7 +102,7 @@ void add_simulate(CLI::App& app) {
   command->add_flag("--sigma", options.state_sigma, "Write the noise into a sigma column");
   command->add_flag("--base-frame", options.base_frame, "Measure in the robot's base frame");
   command->add_option("--seed", options.seed, "Seed of the random numbers")->capture_default_str();
-  command->footer("Example: mdhcal simulate three-parallel -o simulated --poses 40 --outliers 0.05");
+  command->footer("Example:\n  mdhcal simulate three-parallel -o simulated --poses 40 --outliers 0.05");
   command->callback([arguments] { run(*arguments); });
 }
 

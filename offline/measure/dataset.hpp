@@ -24,7 +24,7 @@ struct Measurement {
   std::uint32_t group = 0;        ///< index into Dataset::groups
   std::uint32_t target = 0;       ///< index into Dataset::targets
   MeasurementKind kind = MeasurementKind::position;
-  std::array<double, max_joints> q{};          ///< readings [rad] or [m]
+  Joints q{};
   std::array<double, 3> position_m{};          ///< measured target point, tracker frame
   std::array<double, 4> quaternion{1, 0, 0, 0};///< measured rotation (pose only)
   double distance_m = 0;                       ///< (distance only)
@@ -41,7 +41,7 @@ struct Dataset {
   std::vector<std::string> groups;    ///< names, in order of first appearance; rows without `group` are each their own
   std::vector<std::string> targets;   ///< names, in order of first appearance; one unnamed ("") without the column
   /// Commanded readings, one row each, if the file has `q1_cmd` ...; else empty.
-  std::vector<std::array<double, max_joints>> commanded;
+  std::vector<Joints> commanded;
   std::vector<double> temperature;    ///< if the column is there, else empty
   std::vector<std::string> direction; ///< likewise: direction of approach
   std::vector<std::string> notes;     ///< ignored columns and the like, to be said once

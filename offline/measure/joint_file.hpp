@@ -2,7 +2,6 @@
 // What `forward`, `inverse` and `correct` read and print: tables of joints and of poses.
 #pragma once
 
-#include <array>
 #include <optional>
 #include <string>
 #include <vector>
@@ -10,8 +9,6 @@
 #include "offline/robot/robot.hpp"
 
 namespace mdhcal::offline {
-
-using Joints = std::array<double, max_joints>;  ///< readings [rad] or [m]
 
 struct JointRow {
   std::string id;  ///< `id`, else the row's number from 1

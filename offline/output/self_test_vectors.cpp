@@ -12,6 +12,7 @@
 #include "mdhcal/kinematics.hpp"
 #include "mdhcal/self_test.hpp"
 #include "offline/error.hpp"
+#include "offline/robot/robot.hpp"
 
 namespace mdhcal::offline {
 
@@ -24,8 +25,6 @@ constexpr double step = 0x1p-10;  // binary32 holds every multiple in range, so 
 constexpr double agreement = 1e-12;  // the inverse is done well below its tolerance: its last step was not a close call
 constexpr double agreement_float = 2e-6;
 
-using Readings = std::array<double, max_joints>;
-
 struct Candidate {
   SelfTestVector<double> in_double{};
   SelfTestVector<float> in_float{};
@@ -33,8 +32,8 @@ struct Candidate {
 };
 
 // Inside the limits, with room for the seed's offset where the range leaves it.
-Readings draw(const Geometry& geometry, std::mt19937_64& random) {
-  Readings q{};
+Joints draw(const Geometry& geometry, std::mt19937_64& random) {
+  Joints q{};
   for (std::size_t i = 0; i < static_cast<std::size_t>(geometry.joint_count); ++i) {
     const Joint& joint = geometry.joint[i];
     const double range = joint.kind == JointKind::revolute ? revolute_range_rad : prismatic_range_m;
@@ -50,7 +49,7 @@ Readings draw(const Geometry& geometry, std::mt19937_64& random) {
 }
 
 template <class Real>
-double run(const Arm<Real>& arm, const Readings& readings, Real position_tolerance_m, Real rotation_tolerance_rad,
+double run(const Arm<Real>& arm, const Joints& readings, Real position_tolerance_m, Real rotation_tolerance_rad,
            double accepted, SelfTestVector<Real>& vector) {
   std::array<Real, max_joints> q{};
   for (std::size_t i = 0; i < static_cast<std::size_t>(arm.joint_count); ++i) {
@@ -82,7 +81,7 @@ void fill_self_test_vectors(Model& model) {
   std::mt19937_64 random(20261121);
   std::vector<Candidate> candidates(candidate_count);
   for (Candidate& candidate : candidates) {
-    const Readings q = draw(model.geometry, random);
+    const Joints q = draw(model.geometry, random);
     const double score = run(arm, q, model.tolerances.position_m, model.tolerances.rotation_rad, agreement, candidate.in_double);
     const double score_float = run(arm_float, q, model.tolerances.float_position_m, model.tolerances.float_rotation_rad,
                                    agreement_float, candidate.in_float);

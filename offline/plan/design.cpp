@@ -143,7 +143,7 @@ VectorXd expected_errors(const MatrixXd& rows, Index rows_per_pose, const Matrix
 }
 
 std::vector<std::size_t> exchange(const Experiment& stated, Criterion criterion, std::size_t count,
-                                  const std::vector<std::size_t>& given) {
+                                  const std::vector<std::size_t>& given, const std::function<void()>& step) {
   // Of the predictions only the sum of their variances counts, and that is in their triangle.
   Experiment experiment = stated;
   if (stated.targets.rows() > stated.targets.cols()) experiment.targets = upper_factor(stated.targets);
@@ -154,6 +154,7 @@ std::vector<std::size_t> exchange(const Experiment& stated, Criterion criterion,
     const std::size_t c = best_addition(experiment, criterion, information_factor(experiment, all), taken).first;
     all.push_back(c);
     taken[c] = true;
+    if (step) step();
   };
   for (std::size_t i = 0; i < count; ++i) add_best();
 
@@ -165,6 +166,7 @@ std::vector<std::size_t> exchange(const Experiment& stated, Criterion criterion,
       std::vector<std::size_t> others = all;
       others.erase(others.begin() + static_cast<std::ptrdiff_t>(i));
       const auto [best, with] = best_addition(experiment, criterion, information_factor(experiment, others), taken);
+      if (step) step();
       if (with <= now + least_gain * std::abs(now)) continue;
       taken[all[i]] = false;
       taken[best] = true;

@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -43,8 +44,8 @@ Eigen::VectorXd expected_errors(const Eigen::MatrixXd& rows, Eigen::Index rows_p
 
 /// Chooses `count` different candidates beside `given` ones, which stay: greedily, then by exchanging one at a time
 /// for the best other until no exchange helps (Fedorov 1972; Cook & Nachtsheim 1980). Deterministic.
-/// Precondition: count + given.size() <= candidates.
+/// Precondition: count + given.size() <= candidates. `step`, if given, is called after each search for a best candidate.
 std::vector<std::size_t> exchange(const Experiment& experiment, Criterion criterion, std::size_t count,
-                                  const std::vector<std::size_t>& given = {});
+                                  const std::vector<std::size_t>& given = {}, const std::function<void()>& step = {});
 
 }  // namespace mdhcal::offline

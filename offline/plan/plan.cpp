@@ -16,12 +16,12 @@ namespace {
 // regular, too little to be information.
 constexpr double frame_prior = 1e-3;
 
-std::vector<Readings> drawn(const Robot& robot, const Arm<double>& arm, const PlanOptions& options,
+std::vector<Joints> drawn(const Robot& robot, const Arm<double>& arm, const PlanOptions& options,
                             std::size_t& unreachable) {
   Random random(options.seed);
-  std::vector<Readings> found;
+  std::vector<Joints> found;
   while (found.size() < options.candidate_count) {
-    const Readings q = random_readings(robot.geometry, random);
+    const Joints q = random_readings(robot.geometry, random);
     if (reachable(robot, arm, options.reach, q)) {
       found.push_back(q);
     } else if (++unreachable >= 1000 && unreachable > 100 * (found.size() + 1)) {
@@ -34,14 +34,14 @@ std::vector<Readings> drawn(const Robot& robot, const Arm<double>& arm, const Pl
 }
 
 // The data set that the candidates would give, positions where the nominal robot puts the target.
-Dataset imagined(const Robot& robot, const std::vector<Readings>& candidates) {
+Dataset imagined(const Robot& robot, const std::vector<Joints>& candidates) {
   Dataset data;
   data.path = robot.path;
   data.joint_count = static_cast<std::size_t>(robot.geometry.joint_count);
   data.targets = {""};
   Arm<double> arm{};
   if (make_arm(robot.geometry, arm) != Status::ok) throw InputError(robot.path, 0, 0, "The geometry is not valid.");
-  for (const Readings& q : candidates) {
+  for (const Joints& q : candidates) {
     Measurement row;
     row.id = std::to_string(data.rows.size() + 1);
     row.group = static_cast<std::uint32_t>(data.rows.size());
@@ -69,15 +69,15 @@ ExpectedPosition summary(const Eigen::VectorXd& errors) {
 }
 
 // Each pose next to the nearest of those left, from the zero configuration on: less travel, less time for drift.
-std::vector<Readings> ordered(std::vector<Readings> poses) {
-  const auto distance = [](const Readings& a, const Readings& b) {
+std::vector<Joints> ordered(std::vector<Joints> poses) {
+  const auto distance = [](const Joints& a, const Joints& b) {
     double sum = 0;
     for (std::size_t i = 0; i < a.size(); ++i) sum += (a[i] - b[i]) * (a[i] - b[i]);
     return sum;
   };
-  Readings at{};
+  Joints at{};
   for (auto next = poses.begin(); next != poses.end(); ++next) {
-    std::iter_swap(next, std::min_element(next, poses.end(), [&](const Readings& a, const Readings& b) {
+    std::iter_swap(next, std::min_element(next, poses.end(), [&](const Joints& a, const Joints& b) {
       return distance(a, at) < distance(b, at);
     }));
     at = *next;
@@ -103,7 +103,7 @@ ExpectedPosition median_of_random_sets(const Experiment& experiment, std::size_t
 
 }  // namespace
 
-Experiment experiment_of(const Robot& robot, const SetupOptions& options, const std::vector<Readings>& candidates) {
+Experiment experiment_of(const Robot& robot, const SetupOptions& options, const std::vector<Joints>& candidates) {
   const Dataset data = imagined(robot, candidates);
   std::vector<std::size_t> rows(data.rows.size());
   std::iota(rows.begin(), rows.end(), 0u);
@@ -132,15 +132,16 @@ Experiment experiment_of(const Robot& robot, const SetupOptions& options, const 
   return experiment;
 }
 
-Plan make_plan(const Robot& robot, const PlanOptions& options, const std::vector<Readings>& given) {
+Plan make_plan(const Robot& robot, const PlanOptions& options, const std::vector<Joints>& given,
+               const std::function<void(std::size_t, std::size_t)>& progress) {
   Arm<double> arm{};
   if (make_arm(robot.geometry, arm) != Status::ok) throw InputError(robot.path, 0, 0, "The geometry is not valid.");
   Plan plan;
-  std::vector<Readings> candidates;
+  std::vector<Joints> candidates;
   if (given.empty()) {
     candidates = drawn(robot, arm, options, plan.unreachable);
   } else {
-    for (const Readings& q : given) {
+    for (const Joints& q : given) {
       if (reachable(robot, arm, options.reach, q)) candidates.push_back(q);
     }
     plan.unreachable = given.size() - candidates.size();
@@ -151,12 +152,19 @@ Plan make_plan(const Robot& robot, const PlanOptions& options, const std::vector
                                            std::to_string(std::max<std::size_t>(options.count, 1)) + '.');
   }
   Experiment experiment = experiment_of(robot, options.setup, candidates);
-  const auto chosen = exchange(experiment, options.criterion, options.count);
+  // Exchange ends after three or four sweeps as a rule.
+  constexpr std::size_t usual_sweeps = 4;
+  std::size_t done = 0;
+  const auto step = [&] {
+    ++done;
+    if (progress) progress(done, std::max(done, (usual_sweeps + 1) * (options.count + 10)));
+  };
+  const auto chosen = exchange(experiment, options.criterion, options.count, {}, step);
   const Eigen::MatrixXd factor = information_factor(experiment, chosen);
   plan.expected = summary(expected_errors(experiment.targets, experiment.rows_per_pose, factor));
   plan.random_median = median_of_random_sets(experiment, options.count, options.seed);
   const std::size_t more = std::min<std::size_t>(10, candidates.size() - options.count);
-  auto all = exchange(experiment, options.criterion, more, chosen);
+  auto all = exchange(experiment, options.criterion, more, chosen, step);
   all.insert(all.end(), chosen.begin(), chosen.end());
   plan.with_ten_more =
       summary(expected_errors(experiment.targets, experiment.rows_per_pose, information_factor(experiment, all)));
@@ -171,7 +179,7 @@ Plan make_plan(const Robot& robot, const PlanOptions& options, const std::vector
     const double sd = inverse_transposed.col(experiment.of_interest + static_cast<Eigen::Index>(k)).norm();
     plan.parameters.push_back({name(parameter.id), is_angle(parameter.id), parameter.prior, sd * parameter.prior});
   }
-  std::vector<Readings> poses;
+  std::vector<Joints> poses;
   for (const std::size_t c : chosen) poses.push_back(candidates[c]);
   plan.poses = ordered(std::move(poses));
   return plan;

@@ -2,8 +2,8 @@
 // Choosing the poses to measure, and what to expect of them, before the tracker is set up.
 #pragma once
 
-#include <array>
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -12,8 +12,6 @@
 #include "offline/plan/reach.hpp"
 
 namespace mdhcal::offline {
-
-using Readings = std::array<double, max_joints>;
 
 struct PlanOptions {
   std::size_t count = 30;                ///< poses to choose
@@ -39,7 +37,7 @@ struct ExpectedPosition {
 };
 
 struct Plan {
-  std::vector<Readings> poses;           ///< ordered so that each is near the one before
+  std::vector<Joints> poses;           ///< ordered so that each is near the one before
   std::vector<ExpectedParameter> parameters;
   ExpectedPosition expected;
   ExpectedPosition random_median;        ///< median over 50 random sets of as many of the candidates
@@ -49,10 +47,12 @@ struct Plan {
 
 /// Chooses poses for a robot. `candidates` may be empty: then random reachable configurations are drawn. Those given are
 /// kept only if reachable. The same arguments give the same plan.
+/// `progress`, if given, is called with the steps done and an estimate of all.
 /// Throws InputError if fewer candidates than poses are left, or if none in a hundred draws is reachable.
-Plan make_plan(const Robot& robot, const PlanOptions& options, const std::vector<Readings>& candidates = {});
+Plan make_plan(const Robot& robot, const PlanOptions& options, const std::vector<Joints>& candidates = {},
+               const std::function<void(std::size_t, std::size_t)>& progress = {});
 
 /// The experiment that measuring `candidates` on the nominal robot would be.
-Experiment experiment_of(const Robot& robot, const SetupOptions& options, const std::vector<Readings>& candidates);
+Experiment experiment_of(const Robot& robot, const SetupOptions& options, const std::vector<Joints>& candidates);
 
 }  // namespace mdhcal::offline

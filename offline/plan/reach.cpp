@@ -25,7 +25,7 @@ bool meets(const Box& box, const Vector3& a, const Vector3& b) {
 }
 
 bool reachable(const Robot& robot, const Arm<double>& arm, const Reach& reach,
-               const std::array<double, max_joints>& q) {
+               const Joints& q) {
   const auto n = static_cast<std::size_t>(robot.geometry.joint_count);
   for (std::size_t i = 0; i < n; ++i) {
     const Joint& joint = robot.geometry.joint[i];

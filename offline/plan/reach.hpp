@@ -2,7 +2,6 @@
 // Which configurations can be measured at all.
 #pragma once
 
-#include <array>
 #include <optional>
 #include <vector>
 
@@ -27,7 +26,7 @@ struct Reach {
 /// True if the readings are within their limits, the target is seen by the tracker within the cone, and neither the
 /// polyline through the link frames and the flange to the target nor the line of sight meets a keep-out box.
 bool reachable(const Robot& robot, const Arm<double>& arm, const Reach& reach,
-               const std::array<double, max_joints>& q);
+               const Joints& q);
 
 /// True if the segment from a to b meets the box.
 bool meets(const Box& box, const Vector3& a, const Vector3& b);

@@ -12,6 +12,7 @@
 namespace mdhcal::offline {
 
 using Vector3 = std::array<double, 3>;
+using Joints = std::array<double, max_joints>;  ///< readings [rad] or [m]
 
 /// A point on the flange that a reflector or tool defines, in the flange frame [m].
 struct TargetPoint {

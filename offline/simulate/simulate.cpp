@@ -110,7 +110,8 @@ Pose<double> random_base(Random& random) {
 
 // Measures `configurations` random configurations of the true robot.
 Dataset measure(const Robot& truth, const Arm<double>& arm, std::size_t configurations,
-                const SimulationOptions& options, const std::string& name, Random& random) {
+                const SimulationOptions& options, const std::string& name, Random& random,
+                const std::function<void()>& step) {
   Dataset set;
   set.path = name;
   set.joint_count = static_cast<std::size_t>(truth.geometry.joint_count);
@@ -119,6 +120,7 @@ Dataset measure(const Robot& truth, const Arm<double>& arm, std::size_t configur
   const bool grouped = options.repeats > 1 || options.targets > 1;
   std::size_t visit = 0;
   for (std::size_t c = 0; c < configurations; ++c) {
+    step();
     const auto q = random_readings(truth.geometry, random);
     for (std::size_t r = 0; r < options.repeats; ++r) {
       ++visit;
@@ -177,8 +179,8 @@ std::vector<std::size_t> add_outliers(Dataset& set, const SimulationOptions& opt
 
 }  // namespace
 
-std::array<double, max_joints> random_readings(const Geometry& geometry, Random& random) {
-  std::array<double, max_joints> q{};
+Joints random_readings(const Geometry& geometry, Random& random) {
+  Joints q{};
   for (std::size_t i = 0; i < static_cast<std::size_t>(geometry.joint_count); ++i) {
     const Joint& joint = geometry.joint[i];
     const double span = joint.kind == JointKind::revolute ? std::numbers::pi : 0.5;
@@ -189,7 +191,8 @@ std::array<double, max_joints> random_readings(const Geometry& geometry, Random&
   return q;
 }
 
-Simulation simulate(const Robot& robot, const SimulationOptions& options) {
+Simulation simulate(const Robot& robot, const SimulationOptions& options,
+                    const std::function<void(std::size_t, std::size_t)>& progress) {
   check_options(options);
   Random random(options.seed);
   Simulation result;
@@ -214,8 +217,13 @@ Simulation simulate(const Robot& robot, const SimulationOptions& options) {
   if (make_arm(result.truth.geometry, arm) != Status::ok) {
     throw InputError(robot.path, 0, 0, "the simulated errors take the robot's geometry out of the valid range.");
   }
-  result.train = measure(result.truth, arm, options.configurations, options, "measurements.csv", random);
-  result.test = measure(result.truth, arm, options.test_configurations, options, "test.csv", random);
+  std::size_t done = 0;
+  const auto step = [&] {
+    if (progress) progress(done, options.configurations + options.test_configurations);
+    ++done;
+  };
+  result.train = measure(result.truth, arm, options.configurations, options, "measurements.csv", random, step);
+  result.test = measure(result.truth, arm, options.test_configurations, options, "test.csv", random, step);
   result.outlier_rows = add_outliers(result.train, options, random);
   return result;
 }

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <array>
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 #include "offline/measure/dataset.hpp"
@@ -45,10 +45,12 @@ struct Simulation {
 /// Errors go to exactly those parameters that a fit of base and target leaves free: link 1
 /// (but for beta) and the last link's d and offset stay nominal, and where axis i is within 5 degrees of parallel to
 /// axis i + 1, beta_i takes the place of d_i. So the truth is comparable, parameter by parameter, with a calibration.
-/// The same robot and options give the same result. Throws InputError if an option is out of its range.
-Simulation simulate(const Robot& robot, const SimulationOptions& options);
+/// The same robot and options give the same result. `progress`, if given, is called with the configurations done and all
+/// of them. Throws InputError if an option is out of its range.
+Simulation simulate(const Robot& robot, const SimulationOptions& options,
+                    const std::function<void(std::size_t, std::size_t)>& progress = {});
 
 /// Readings drawn evenly within the joint limits: half a turn or half a metre each way where the robot states none.
-std::array<double, max_joints> random_readings(const Geometry& geometry, Random& random);
+Joints random_readings(const Geometry& geometry, Random& random);
 
 }  // namespace mdhcal::offline

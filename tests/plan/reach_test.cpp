@@ -71,7 +71,7 @@ TEST(Reach, LimitsAndKeepOutBoxesHold) {
   Arm<double> arm{};
   ASSERT_EQ(make_arm(robot.geometry, arm), Status::ok);
   Reach reach;
-  std::array<double, max_joints> q{};
+  Joints q{};
   EXPECT_TRUE(reachable(robot, arm, reach, q));
   q[1] = robot.geometry.joint[1].max + 1e-6;
   EXPECT_FALSE(reachable(robot, arm, reach, q));

@@ -16,7 +16,7 @@ using namespace mdhcal;
 using namespace mdhcal::offline;
 
 // Independent of lib: the five factors of (Li 2022, Eq. 1) as Eigen products.
-Eigen::Isometry3d base_T_flange(const Geometry& g, const std::array<double, max_joints>& q) {
+Eigen::Isometry3d base_T_flange(const Geometry& g, const Joints& q) {
   using Eigen::AngleAxisd, Eigen::Translation3d, Eigen::Vector3d;
   Eigen::Isometry3d t = Eigen::Isometry3d::Identity();
   for (int i = 0; i < g.joint_count; ++i) {
