@@ -6,7 +6,6 @@
 #include <csignal>
 #include <cstdio>
 #include <cstring>
-#include <fstream>
 
 #include <fcntl.h>
 #include <unistd.h>
@@ -29,11 +28,41 @@ fs::path partial_name(const fs::path& path) {
   return path.parent_path() / ('.' + path.filename().string() + std::string(mark) + std::to_string(getpid()));
 }
 
-void write_plain(const fs::path& path, std::string_view bytes) {
-  std::ofstream out(path, std::ios::binary | std::ios::trunc);
-  out.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-  out.close();
-  if (!out) fail(path, "cannot be written", errno);
+// A descriptor that closes itself.
+class Descriptor {
+ public:
+  Descriptor(const fs::path& path, int flags) : fd_(open(path.c_str(), flags | O_CLOEXEC, 0666)) {}
+  ~Descriptor() {
+    if (fd_ >= 0) close(fd_);
+  }
+  Descriptor(const Descriptor&) = delete;
+  Descriptor& operator=(const Descriptor&) = delete;
+  int get() const { return fd_; }
+
+ private:
+  int fd_;
+};
+
+// True once what was written is on the disk; devices and file systems that know no such thing count as well.
+bool flushed(int fd) { return fsync(fd) == 0 || errno == EINVAL || errno == EROFS || errno == ENOTSUP; }
+
+// 0, or the error number.
+int write_plain(const fs::path& path, std::string_view bytes) {
+  const Descriptor file(path, O_WRONLY | O_CREAT | O_TRUNC);
+  bool good = file.get() >= 0;
+  while (good && !bytes.empty()) {
+    const ssize_t count = write(file.get(), bytes.data(), bytes.size());
+    if (count > 0) bytes.remove_prefix(static_cast<std::size_t>(count));
+    good = count > 0 || (count < 0 && errno == EINTR);
+  }
+  // Before any rename: a power cut after it must not find an empty file under the final name.
+  return good && flushed(file.get()) ? 0 : errno;
+}
+
+// The names in a folder, on the disk. A folder that may be written but not read is left to the file system.
+void flush_folder(const fs::path& path) {
+  const Descriptor folder(path.empty() ? "." : path, O_RDONLY | O_DIRECTORY);
+  if (folder.get() >= 0 && !flushed(folder.get())) fail(path, "cannot be written", errno);
 }
 
 // What killed runs for the same destination left: the mark ends in the number of a process that is gone.
@@ -80,24 +109,19 @@ void write_file(const fs::path& path, std::string_view bytes) {
   std::error_code missing;
   const fs::file_type type = fs::status(path, missing).type();
   if (type == fs::file_type::character || type == fs::file_type::fifo) {
-    write_plain(path, bytes);
+    if (const int error = write_plain(path, bytes)) fail(path, "cannot be written", error);
     return;
   }
   remove_leftovers(path);
   const fs::path partial = partial_name(path);
-  try {
-    write_plain(partial, bytes);
-  } catch (const InputError&) {
-    std::error_code ignored;
-    fs::remove(partial, ignored);
-    fail(path, "cannot be written", errno);
-  }
-  if (std::rename(partial.c_str(), path.c_str()) != 0) {
-    const int error = errno;
+  int error = write_plain(partial, bytes);
+  if (error == 0 && std::rename(partial.c_str(), path.c_str()) != 0) error = errno;
+  if (error != 0) {
     std::error_code ignored;
     fs::remove(partial, ignored);
     fail(path, "cannot be written", error);
   }
+  flush_folder(path.parent_path());
 }
 
 OutputFolder::OutputFolder(fs::path destination, std::vector<std::string> names) : names_(std::move(names)) {
@@ -127,13 +151,15 @@ void OutputFolder::write(const std::string& name, std::string_view bytes) {
   if (std::find(names_.begin(), names_.end(), name) == names_.end()) {
     throw std::logic_error(name + " is not a file of this result");
   }
-  write_plain(staging_ / name, bytes);
+  if (const int error = write_plain(staging_ / name, bytes)) fail(destination_ / name, "cannot be written", error);
 }
 
 void OutputFolder::commit() {
+  flush_folder(staging_);
   if (earlier_result(destination_, names_)) {
     if (renameat2(AT_FDCWD, staging_.c_str(), AT_FDCWD, destination_.c_str(), RENAME_EXCHANGE) == 0) {
       committed_ = true;
+      flush_folder(destination_.parent_path());
       std::error_code ignored;
       fs::remove_all(staging_, ignored);  // the earlier result now has this name
       return;
@@ -144,6 +170,7 @@ void OutputFolder::commit() {
   }
   if (std::rename(staging_.c_str(), destination_.c_str()) != 0) fail(destination_, "cannot be put in place", errno);
   committed_ = true;
+  flush_folder(destination_.parent_path());
 }
 
 }  // namespace mdhcal::offline

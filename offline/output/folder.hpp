@@ -8,14 +8,15 @@
 
 namespace mdhcal::offline {
 
-/// Writes a file so that it is there whole or not at all: under another name beside it, then renamed. A device or a
-/// pipe (/dev/stdout) is written as it is.
+/// Writes a file so that it is there whole or not at all: under another name beside it, flushed to the disk, then
+/// renamed. A device or a pipe (/dev/stdout) is written as it is.
 /// Throws InputError if it cannot be written.
 void write_file(const std::filesystem::path& path, std::string_view bytes);
 
 /// A folder of results that appears whole or not at all. Files go to a hidden folder beside it, and commit() puts that
-/// in place with one rename (an earlier result is exchanged, then removed). A killed run leaves the destination as it
-/// was; what it left beside it is removed by the next run for the same destination.
+/// in place with one rename (an earlier result is exchanged, then removed) when all of it is on the disk. A run that is
+/// killed, or ended by a power cut, leaves the destination as it was; what it left beside it is removed by the next run
+/// for the same destination.
 class OutputFolder {
  public:
   /// `names` are the files that a result may consist of. Throws InputError if `destination` exists and is not a

@@ -106,8 +106,25 @@ TEST(Batch, RunsUnderGnuParallel) {
   EXPECT_EQ(read_bytes(folder / "parts/summary.csv"), read_bytes(folder / "whole/summary.csv"));
 }
 
-// Starts the program and kills it after that many microseconds. Returns true if it was still running.
-bool killed(const std::vector<std::string>& arguments, useconds_t after_us) {
+// True if the process has begun to write a result beside its final place in `folder`: at least one file of it is there.
+bool is_writing(const std::string& folder, pid_t process) {
+  std::error_code gone;  // what is listed may be renamed meanwhile
+  for (const auto& entry : fs::directory_iterator(folder, gone)) {
+    const std::string name = entry.path().filename().string();
+    if (!name.starts_with('.') || !name.ends_with('-' + std::to_string(process))) continue;
+    if (fs::directory_iterator(entry.path(), gone) != fs::directory_iterator()) return true;
+  }
+  return false;
+}
+
+struct Kill {
+  bool cut = false;     // it was still running
+  bool inside = false;  // and had written a part of a result
+};
+
+// Starts the program and kills it after that many microseconds, counted from its start or, if it `writes_in` there, from
+// its first file in the folder.
+Kill kill_after(const std::vector<std::string>& arguments, useconds_t after_us, const std::string& folder, bool writes_in) {
   std::vector<char*> argv;
   std::string program = MDHCAL_PROGRAM;
   argv.push_back(program.data());
@@ -122,11 +139,17 @@ bool killed(const std::vector<std::string>& arguments, useconds_t after_us) {
     execv(argv[0], argv.data());
     _exit(127);
   }
+  siginfo_t ended{};
+  while (writes_in && !is_writing(folder, child)) {
+    waitid(P_PID, static_cast<id_t>(child), &ended, WEXITED | WNOHANG | WNOWAIT);
+    if (ended.si_pid == child) break;
+    usleep(50);
+  }
   usleep(after_us);
   kill(child, SIGKILL);
   int status = 0;
   waitpid(child, &status, 0);
-  return WIFSIGNALED(status);
+  return {WIFSIGNALED(status), WIFSIGNALED(status) && is_writing(folder, child)};
 }
 
 double seconds_of(const std::vector<std::string>& arguments) {
@@ -143,17 +166,24 @@ TEST(Kill, CalibrateLeavesNothingOrEverything) {
   const auto whole = contents(folder / "out/x");
   ASSERT_EQ(whole.size(), 5u);
   Random random(1);
-  int cut = 0, nothing = 0;
+  int cut = 0, inside = 0, nothing = 0;
   for (int k = 0; k < 50; ++k) {
     if (k % 2 == 0) fs::remove_all(folder / "out");  // every other time an earlier result is exchanged
-    cut += killed(arguments, static_cast<useconds_t>(1e6 * random.uniform(0, 1.1 * seconds)));
+    // Half of the moments lie anywhere, half where files are written.
+    const bool writes_in = k % 4 >= 2;
+    const double after_s = random.uniform(0, writes_in ? 0.7 * seconds : 1.1 * seconds);
+    const Kill kill = kill_after(arguments, static_cast<useconds_t>(1e6 * after_s), folder / "out", writes_in);
+    cut += kill.cut;
+    inside += kill.inside;
     if (!fs::exists(folder / "out/x")) {
       ++nothing;
       continue;
     }
     EXPECT_EQ(contents(folder / "out/x"), whole) << k;
   }
+  std::printf("%d of 50 killed, %d while a result was half written\n", cut, inside);
   EXPECT_GT(cut, 20);
+  EXPECT_GT(inside, 12);
   EXPECT_GT(nothing, 5);
   seconds_of(arguments);
   EXPECT_EQ(names_in(folder / "out"), std::vector<std::string>{"x"});  // what the killed ones left is gone
@@ -169,14 +199,18 @@ TEST(Kill, ABatchIsContinuedWithoutLosingOrRedoingARobot) {
   const auto whole = contents(folder / "whole");
   ASSERT_EQ(whole.size(), 6u * 4 + 2);
   Random random(2);
-  int cut = 0;
+  int cut = 0, inside = 0;
   std::map<std::string, fs::file_time_type> born;
   for (int k = 0; k < 50; ++k) {
     if (k % 5 == 0) {
       fs::remove_all(folder / "out");
       born.clear();
     }
-    cut += killed(arguments("out"), static_cast<useconds_t>(1e6 * random.uniform(0, 0.9 * seconds)));
+    const bool writes_in = k % 2 == 1;
+    const double after_s = writes_in ? random.uniform(0, 0.002) : random.uniform(0, 0.9 * seconds);
+    const Kill kill = kill_after(arguments("out"), static_cast<useconds_t>(1e6 * after_s), folder / "out", writes_in);
+    cut += kill.cut;
+    inside += kill.inside;
     if (!fs::exists(folder / "out")) continue;
     for (const std::string& name : names_in(folder / "out")) {
       if (name[0] == '.' || name.starts_with("summary")) continue;
@@ -187,7 +221,9 @@ TEST(Kill, ABatchIsContinuedWithoutLosingOrRedoingARobot) {
       EXPECT_EQ(born.emplace(name, time).first->second, time) << name << " was done twice";
     }
   }
+  std::printf("%d of 50 killed, %d while a result was half written\n", cut, inside);
   EXPECT_GT(cut, 20);
+  EXPECT_GT(inside, 12);
   ASSERT_EQ(run_mdhcal(arguments("out")).exit_code, 0);
   EXPECT_EQ(contents(folder / "out"), whole);
 }

@@ -1,14 +1,44 @@
 // SPDX-License-Identifier: MIT
 #include "offline/output/folder.hpp"
 
+#include <cstdio>
 #include <fstream>
 #include <iterator>
+#include <string>
+#include <vector>
 
+#include <fcntl.h>
 #include <gtest/gtest.h>
+#include <sys/syscall.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include "offline/error.hpp"
+
+namespace {
+
+// What reached the disk and what was renamed, in order: "flush NAME" and "rename NAME".
+std::vector<std::string> to_disk;
+
+std::string last_name(const std::filesystem::path& path) { return path.filename().string(); }
+
+}  // namespace
+
+// These stand before the C library's, note the call and pass it on.
+extern "C" int fsync(int fd) {
+  to_disk.push_back("flush " + last_name(std::filesystem::read_symlink("/proc/self/fd/" + std::to_string(fd))));
+  return static_cast<int>(syscall(SYS_fsync, fd));
+}
+
+extern "C" int rename(const char* from, const char* to) noexcept {
+  to_disk.push_back("rename " + last_name(to));
+  return static_cast<int>(syscall(SYS_renameat2, AT_FDCWD, from, AT_FDCWD, to, 0));
+}
+
+extern "C" int renameat2(int from_folder, const char* from, int to_folder, const char* to, unsigned flags) noexcept {
+  to_disk.push_back("rename " + last_name(to));
+  return static_cast<int>(syscall(SYS_renameat2, from_folder, from, to_folder, to, flags));
+}
 
 namespace {
 
@@ -75,6 +105,24 @@ TEST_F(Folder, AnEarlierResultIsExchangedAndAnAbandonedRunLeavesIt) {
   }
   EXPECT_EQ(read(top_ / "result" / "a.txt"), "two");
   EXPECT_EQ(entries(), 1);
+}
+
+// A power cut may come after any of these steps: all bytes and names are on the disk before the rename that shows them.
+TEST_F(Folder, IsOnTheDiskBeforeItIsShown) {
+  const std::string mark = ".mdhcal-partial-" + std::to_string(getpid());
+  const std::string home = last_name(top_);
+  for (int again = 0; again < 2; ++again) {  // into an empty place, and in exchange for an earlier result
+    OutputFolder folder(top_ / "result", names_);
+    to_disk.clear();
+    folder.write("a.txt", "one");
+    folder.write("b.txt", "two");
+    folder.commit();
+    EXPECT_EQ(to_disk, (std::vector<std::string>{"flush a.txt", "flush b.txt", "flush .result" + mark, "rename result",
+                                                 "flush " + home}));
+  }
+  to_disk.clear();
+  mdhcal::offline::write_file(top_ / "c.txt", "three");
+  EXPECT_EQ(to_disk, (std::vector<std::string>{"flush .c.txt" + mark, "rename c.txt", "flush " + home}));
 }
 
 TEST_F(Folder, SomethingElseIsRefusedAndUntouched) {
