@@ -30,12 +30,7 @@ std::string number(double value, const char* format = "%.3g") {
 LambdaRule rule_of(const CalibrationOptions& options) {
   if (options.method == "rpim-train") return LambdaRule::rpim_train;
   if (options.lambda) return LambdaRule::fixed;
-  const std::pair<const char*, LambdaRule> rules[] = {
-      {"reml", LambdaRule::marginal_likelihood}, {"rpim", LambdaRule::rpim},
-      {"rpim-train", LambdaRule::rpim_train},    {"l-curve", LambdaRule::l_curve},
-      {"gcv", LambdaRule::gcv},                  {"cv", LambdaRule::cv},
-      {"discrepancy", LambdaRule::discrepancy},  {"quasi-optimality", LambdaRule::quasi_optimality}};
-  for (const auto& [word, rule] : rules) {
+  for (const auto& [word, rule] : lambda_rules) {
     if (options.lambda_rule == word) return rule;
   }
   throw InputError("--lambda-rule names \"" + options.lambda_rule +

@@ -7,15 +7,13 @@
 
 namespace mdhcal::offline {
 
-namespace {
-
-LambdaChoice choose(const Dataset& data, const Selection& selection, const Layout& layout, const Fit& at,
-                    const RegularizedControl& control, LambdaChoice& corner) {
-  const Model model(at.estimate);
+LambdaChoice choose_lambda(const Dataset& data, const Selection& selection, const Layout& layout, const Estimate& at,
+                           const RegularizedControl& control, LambdaChoice& corner) {
+  const Model model(at);
   const std::vector<Triangle> parts = linearise(model, data, selection, layout, control.noise_mm);
   Triangle whole = sum_of(parts);
   const ReducedSystem system = reduce_frames(whole.matrix(), layout.frame_columns(), whole.row_count());
-  const std::vector<double> x = deviation(at.estimate, layout);
+  const std::vector<double> x = deviation(at, layout);
   const Eigen::VectorXd x0 = Eigen::Map<const Eigen::VectorXd>(x.data(), static_cast<Eigen::Index>(x.size()));
   const SpectralProblem problem = penalised_problem(system, x0);
   corner = l_curve(problem);
@@ -63,8 +61,6 @@ LambdaChoice choose(const Dataset& data, const Selection& selection, const Layou
   return choice;
 }
 
-}  // namespace
-
 RegularizedFit regularized_fit(const Dataset& data, Selection& selection, const Layout& layout, const Estimate& start,
                                const RegularizedControl& control) {
   const Folds folds = make_folds(data, selection.rows, control.seed);
@@ -85,7 +81,7 @@ RegularizedFit regularized_fit(const Dataset& data, Selection& selection, const 
   constexpr int rounds = 4;
   for (int round = 0; round < rounds; ++round) {
     const double before = stage.lambda;
-    out.choice = choose(data, selection, layout, out.fit, control, out.corner);
+    out.choice = choose_lambda(data, selection, layout, out.fit.estimate, control, out.corner);
     if (!out.choice.found) {
       LambdaChoice fallback = out.choice;
       fallback.lambda = out.fit.lambda;

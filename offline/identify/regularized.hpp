@@ -4,6 +4,8 @@
 
 #include <cstdint>
 #include <optional>
+#include <string_view>
+#include <utility>
 
 #include "offline/identify/fit.hpp"
 #include "offline/identify/folds.hpp"
@@ -12,6 +14,13 @@
 namespace mdhcal::offline {
 
 enum class LambdaRule { rpim, rpim_train, l_curve, gcv, cv, discrepancy, quasi_optimality, fixed, marginal_likelihood };
+
+/// Every rule by the word that names it.
+inline constexpr std::pair<std::string_view, LambdaRule> lambda_rules[] = {
+    {"reml", LambdaRule::marginal_likelihood}, {"rpim", LambdaRule::rpim},
+    {"rpim-train", LambdaRule::rpim_train},    {"l-curve", LambdaRule::l_curve},
+    {"gcv", LambdaRule::gcv},                  {"cv", LambdaRule::cv},
+    {"discrepancy", LambdaRule::discrepancy},  {"quasi-optimality", LambdaRule::quasi_optimality}};
 
 struct RegularizedControl {
   LambdaRule rule = LambdaRule::rpim;
@@ -27,6 +36,11 @@ struct RegularizedFit {
   LambdaChoice choice;
   LambdaChoice corner;     ///< the L-curve of the same problem, for the record
 };
+
+/// What the rule of `control` says on the problem linearised at `at`; `selection` has folds and weights. `corner` receives
+/// the L-curve. Throws InputError if the rule is discrepancy and there is no sigma.
+LambdaChoice choose_lambda(const Dataset& data, const Selection& selection, const Layout& layout, const Estimate& at,
+                           const RegularizedControl& control, LambdaChoice& corner);
 
 /// Robust starting fit with lambda following the residual's scale (Huber, then Tukey), then the rule on the problem
 /// linearised there, then the fit with that lambda; again until lambda stays. `selection` returns with the weights.

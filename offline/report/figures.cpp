@@ -3,10 +3,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <map>
 
-#include "offline/identify/fit.hpp"
-#include "offline/identify/lambda_rules.hpp"
+#include "offline/identify/folds.hpp"
 #include "offline/identify/reduction.hpp"
+#include "offline/identify/regularized.hpp"
 #include "offline/identify/rigid.hpp"
 #include "offline/robot/rotation.hpp"
 #include "offline/simulate/simulate.hpp"
@@ -46,16 +48,25 @@ std::vector<std::vector<double>> cumulative(std::vector<double> errors) {
   return rows;
 }
 
-std::vector<std::vector<double>> histogram(const std::vector<double>& errors, double low, double high) {
-  constexpr std::size_t bins = 24;
+// Middle, count and width of each bin. Bins are equally wide on a logarithmic axis, eight a decade: before and after
+// differ by orders of magnitude, and so does an outlier from the rest.
+std::vector<std::vector<double>> histogram(const std::vector<double>& errors) {
+  constexpr double bins_per_decade = 8;
+  std::map<long, double> counts;
+  for (const double error : errors) counts[std::lround(std::floor(std::log10(error) * bins_per_decade))] += 1;
   std::vector<std::vector<double>> rows;
-  const double width = (high - low) / bins;
-  for (std::size_t b = 0; b < bins; ++b) rows.push_back({low + (static_cast<double>(b) + 0.5) * width, 0.0});
-  for (const double error : errors) {
-    const double at = std::clamp((error - low) / width, 0.0, bins - 1.0);
-    rows[static_cast<std::size_t>(at)][1] += 1;
+  for (const auto& [bin, count] : counts) {
+    const double low = std::pow(10, static_cast<double>(bin) / bins_per_decade);
+    const double high = std::pow(10, static_cast<double>(bin + 1) / bins_per_decade);
+    rows.push_back({(low + high) / 2, count, high - low});
   }
   return rows;
+}
+
+// The largest of 1, 2, 5, 10, ... that is not above the value.
+double round_step(double value) {
+  const double decade = std::pow(10, std::floor(std::log10(value)));
+  return (value >= 5 * decade ? 5 : value >= 2 * decade ? 2 : 1) * decade;
 }
 
 double nonzero(double value) { return std::max(value, 1e-6); }
@@ -77,32 +88,49 @@ std::string row_name(const Calibration& calibration, const RowResult& row) {
 
 std::optional<LambdaPicture> lambda_picture(const Calibration& calibration) {
   if (calibration.layout.geometry.empty() || calibration.training_rows.empty()) return std::nullopt;
+  const Dataset& data = calibration.training;
   Selection selection;
   selection.rows = calibration.training_rows;
   selection.robust_weight = calibration.robust_weight;
-  const Model model(calibration.estimate);
+  RegularizedControl control;
+  const Folds folds = make_folds(data, selection.rows, control.seed);
+  selection.fold = folds.of_row;
+  selection.folds = folds.count;
+  control.noise_mm = calibration.noise_mm;
+  control.sigma = states_sigma(data) ? 1.0 : calibration.noise_mm;
+
   Triangle triangle = sum_of(
-      linearise(model, calibration.training, selection, calibration.layout, CalibrationOptions{}.noise_mm.value_or(0.02)));
+      linearise(Model(calibration.estimate), data, selection, calibration.layout, control.noise_mm));
   const std::vector<double> x0 = deviation(calibration.estimate, calibration.layout);
   LambdaPicture picture;
   picture.problem = penalised_problem(
       reduce_frames(triangle.matrix(), calibration.layout.frame_columns(), triangle.row_count()),
       Eigen::Map<const Eigen::VectorXd>(x0.data(), static_cast<Eigen::Index>(x0.size())));
   if (picture.problem.rank() == 0) return std::nullopt;
-  const auto add = [&](const std::string& rule, bool found, double lambda) {
-    if (!found || !(lambda > 0)) return;
+  const auto add = [&](const std::string& rule, double lambda) {
     picture.choices.push_back({rule, lambda, std::sqrt(picture.problem.residual_norm2(lambda)),
                                std::sqrt(picture.problem.solution_norm2(lambda))});
   };
-  add("chosen: " + calibration.lambda.rule, true, calibration.lambda.lambda);
-  const LambdaChoice corner = l_curve(picture.problem);
-  add("corner of the L-curve", corner.found, corner.lambda);
-  const LambdaChoice gcv = generalised_cross_validation(picture.problem);
-  add("generalised cross-validation", gcv.found, gcv.lambda);
-  const LambdaChoice likelihood = marginal_likelihood(picture.problem, 1.0);
-  add("marginal likelihood", likelihood.found, likelihood.lambda);
-  const LambdaChoice quasi = quasi_optimality(picture.problem);
-  add("quasi-optimality", quasi.found, quasi.lambda);
+  if (calibration.lambda.lambda > 0) add(calibration.lambda.rule + " (chosen)", calibration.lambda.lambda);
+  // A judge predicts every row for some fifty lambdas.
+  constexpr std::size_t most_judged_rows = 20000;
+  for (const auto& [word, rule] : lambda_rules) {
+    const std::string name(word);
+    if (name == calibration.lambda.rule) continue;
+    const bool judged = rule == LambdaRule::rpim || rule == LambdaRule::rpim_train || rule == LambdaRule::cv;
+    if (judged && selection.rows.size() > most_judged_rows) {
+      picture.silent.push_back(name + ": left out, it judges every row many times over");
+      continue;
+    }
+    control.rule = rule;
+    LambdaChoice corner;
+    const LambdaChoice choice = choose_lambda(data, selection, calibration.layout, calibration.estimate, control, corner);
+    if (choice.found && choice.lambda > 0) {
+      add(name, choice.lambda);
+    } else {
+      picture.silent.push_back(name + ": " + (choice.note.empty() ? "no choice on this problem." : choice.note));
+    }
+  }
   return picture;
 }
 
@@ -134,17 +162,16 @@ Figure distribution_figure(const Calibration& calibration) {
     before.push_back(nonzero(before_norm_mm(*row)));
     after.push_back(nonzero(after_norm_mm(*row)));
   }
-  const double high = after.empty() ? 1 : *std::max_element(after.begin(), after.end());
-  const auto bars = histogram(after, 0, nonzero(high));
-  Figure figure{"Histogram and cumulative curve of the position error", "", 720, 300};
-  figure.script = data_block("bars", bars) + data_block("before", cumulative(before)) +
-                  data_block("after", cumulative(after)) +
-                  "set multiplot layout 1,2\nset grid\nset style fill solid 0.6\nset boxwidth " +
-                  text_of(nonzero(high) / 24 * 0.92) +
-                  "\nset xtics rotate by 45 right\nset xlabel 'error after [mm]'\nset ylabel 'rows'\nset xrange [0:*]\nset yrange [0:*]\n"
-                  "plot $bars using 1:2 with boxes lc " + after_colour + " notitle\n"
-                  "set xtics norotate\nset logscale x\nset xrange [*:*]\nset yrange [0:100]\nset xlabel 'error [mm]'\n"
-                  "set ylabel 'rows at or below [%]'\nset key bottom right\n"
+  Figure figure{std::string("Histogram and cumulative curve of the position error of the ") +
+                    (calibration.test ? "held-out" : "training") + " rows",
+                "", 720, 300};
+  figure.script = data_block("bars_before", histogram(before)) + data_block("bars_after", histogram(after)) +
+                  data_block("before", cumulative(before)) + data_block("after", cumulative(after)) +
+                  "set multiplot layout 1,2\nset grid\nset style fill solid 0.6\nset logscale x\nset format x '%g'\n"
+                  "set xlabel 'error [mm]'\nset ylabel 'rows'\nset yrange [0:*]\nset key outside top horizontal\n"
+                  "plot $bars_before using 1:2:3 with boxes lc " + before_colour + " title 'before', "
+                  "$bars_after using 1:2:3 with boxes lc " + after_colour + " title 'after'\n"
+                  "set yrange [0:100]\nset ylabel 'rows at or below [%]'\n"
                   "plot $before using 1:2 with steps lw 2 lc " + before_colour + " title 'before', "
                   "$after using 1:2 with steps lw 2 lc " + after_colour + " title 'after'\nunset multiplot";
   return figure;
@@ -187,10 +214,14 @@ Figure axes_figure(const Calibration& calibration) {
   if (rows.empty()) rows.push_back({0, 0, 0, 0});
   Figure figure{"Residual along each axis of the measurement frame, outliers left out", "", 720, 480};
   figure.script = data_block("r", rows) + "set multiplot layout 3,1\nset grid\nset tmargin 0.5\nset bmargin 2\n"
-                  "set lmargin 9\nset xzeroaxis\n";
+                  "set lmargin 12\nset xzeroaxis\nset xrange [0:" +
+                  text_of(static_cast<double>(calibration.rows.size()) + 1) + "]\n";
   const char* names[] = {"x", "y", "z"};
   for (int k = 0; k < 3; ++k) {
-    figure.script += "set ylabel '" + std::string(names[k]) + " [mm]'\nplot $r using 1:" + std::to_string(k + 2) +
+    double largest = 1e-6;
+    for (const auto& row : rows) largest = std::max(largest, std::abs(row[static_cast<std::size_t>(k) + 1]));
+    figure.script += "set yrange [" + text_of(-1.1 * largest) + ':' + text_of(1.1 * largest) + "]\nset ytics " +
+                     text_of(round_step(largest)) + "\nset ylabel '" + names[k] + " [mm]'\nplot $r using 1:" + std::to_string(k + 2) +
                      " with points pt 7 ps 0.4 lc " + after_colour + " notitle\n";
   }
   figure.script += "unset multiplot";
@@ -220,9 +251,9 @@ Figure vectors_figure(const Calibration& calibration) {
   double factor = longest > 0 && extent > 0 ? extent / 8 / longest : 1;
   factor = std::pow(10, std::floor(std::log10(factor)));
   Figure figure{"Error vectors after calibration, enlarged " + text_of(factor) + " times, in the robot's base frame", "", 720,
-                480};
+                420};
   figure.script = data_block("v", rows) + "f = " + text_of(factor) +
-                  "\nset xlabel 'x [mm]'\nset ylabel 'y [mm]'\nset zlabel 'z [mm]' rotate\nset grid\nset view 62,38,1.1,1.1\n"
+                  "\nset xlabel 'x [mm]'\nset ylabel 'y [mm]'\nset zlabel 'z [mm]' rotate\nset grid\nset view 62,38,1,1.15\nset tmargin 0\nset bmargin 0\n"
                   "set xyplane 0.05\nset tics font ',9'\nset cblabel 'error [mm]'\n"
                   "set palette defined (0 '#440154', 0.5 '#21908c', 1 '#fde725')\n"
                   "splot $v using 1:2:3:($4*f):($5*f):($6*f):7 with vectors head size graph 0.01,20 lw 1.2 lc palette notitle";
@@ -237,18 +268,21 @@ Figure lambda_figure(const LambdaPicture& picture, const LambdaReport& chosen) {
     const double lambda = low * std::pow(high / low, k / 120.0);
     curve.push_back({std::sqrt(picture.problem.residual_norm2(lambda)), std::sqrt(picture.problem.solution_norm2(lambda))});
   }
-  Figure figure{"L-curve with the choices of the rules", "", 720, 360};
+  Figure figure{"L-curve with the choices of the rules", "", 720, 380};
   figure.script = data_block("curve", curve);
-  std::string plots = "$curve with lines lw 2 lc rgb '#666666' title 'L-curve'";
+  std::string plots = "$curve with lines lw 2 lc rgb '#999999' title 'L-curve'";
+  // Rules often agree: open marks, each another shape and size, so that none hides another.
+  constexpr int shapes[] = {7, 4, 8, 12, 6, 10, 14, 1, 2};
   for (std::size_t k = 0; k < picture.choices.size(); ++k) {
     const RuleChoice& choice = picture.choices[k];
     const std::string name = "c" + std::to_string(k);
     figure.script += data_block(name, {{choice.residual_norm, choice.solution_norm}});
-    plots += ", $" + name + " with points pt " + std::to_string(k == 0 ? 7 : 4 + 2 * static_cast<int>(k)) + " ps " +
-             (k == 0 ? "1.4" : "1.5") + " lw 1.5 title '" + choice.rule + "'";
+    plots += ", $" + name + " with points pt " + std::to_string(shapes[k % std::size(shapes)]) + " ps " +
+             text_of(k == 0 ? 1.0 : 1.1 + 0.2 * static_cast<double>(k)) + " lw 1.6 lt " + std::to_string(k + 1) + " title '" +
+             choice.rule + "'";
   }
   figure.script += "set logscale xy\nset grid\nset xlabel 'residual norm'\nset ylabel 'norm of the deviations [prior sd]'\n"
-                   "set key outside right\nplot " + plots;
+                   "set offsets graph 0.05, graph 0.05, 0, 0\nset key outside right\nplot " + plots;
   return figure;
 }
 
@@ -275,9 +309,9 @@ Figure spectrum_figure(const Calibration& calibration) {
 }
 
 Figure accuracy_figure(const PredictedAccuracy& accuracy) {
-  Figure figure{"Predicted standard deviation of the position over the workspace, robot's base frame", "", 720, 460};
+  Figure figure{"Predicted standard deviation of the position over the workspace, robot's base frame", "", 720, 420};
   figure.script = data_block("p", accuracy.points) +
-                  "set xlabel 'x [mm]'\nset ylabel 'y [mm]'\nset zlabel 'z [mm]' rotate\nset grid\nset view 62,38,1.1,1.1\n"
+                  "set xlabel 'x [mm]'\nset ylabel 'y [mm]'\nset zlabel 'z [mm]' rotate\nset grid\nset view 62,38,1,1.15\nset tmargin 0\nset bmargin 0\n"
                   "set xyplane 0.05\nset tics font ',9'\nset cblabel 'standard deviation [mm]'\n"
                   "set palette defined (0 '#440154', 0.5 '#21908c', 1 '#fde725')\n"
                   "splot $p using 1:2:3:4 with points pt 7 ps 0.6 lc palette notitle";

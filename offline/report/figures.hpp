@@ -18,10 +18,11 @@ struct RuleChoice {
   double lambda = 0, residual_norm = 0, solution_norm = 0;
 };
 
-/// The regularized problem at the result, and what the rules without a judge say on it.
+/// The regularized problem at the result, and what every rule says on it.
 struct LambdaPicture {
   SpectralProblem problem;
-  std::vector<RuleChoice> choices;
+  std::vector<RuleChoice> choices;    ///< the one that was made first
+  std::vector<std::string> silent;    ///< rules without a choice here, and why
 };
 
 /// Empty if no parameter was estimated.

@@ -17,16 +17,18 @@ h2 { font-size: 12.5pt; margin: 7mm 0 2mm; border-bottom: 0.3mm solid #888; brea
 .verdict { border: 0.4mm solid #2a5d84; background: #eef4f8; padding: 3mm 4mm; margin: 3mm 0; font-size: 11.5pt; }
 .wide { overflow-x: auto; }
 table { border-collapse: collapse; margin: 2mm 0; font-size: 9pt; }
-th, td { border-bottom: 0.2mm solid #bbb; padding: 0.6mm 2mm; text-align: left; vertical-align: top; }
+th, td { border-bottom: 0.2mm solid #bbb; padding: 0.6mm 1.5mm; text-align: left; vertical-align: top; }
 table.numeric th:not(:first-child), table.numeric td:not(:first-child) { text-align: right; white-space: nowrap; font-variant-numeric: tabular-nums; }
 table.numeric th { white-space: normal !important; }
 table.numeric td:last-child { white-space: normal; }
+.nowrap { white-space: nowrap; }
 tr { break-inside: avoid; }
 thead { display: table-header-group; }
+p:has(+ .wide), p:has(+ figure) { break-after: avoid; }
 figure { margin: 3mm 0; break-inside: avoid; }
 figure svg { width: 100%; height: auto; display: block; }
 figcaption { font-size: 9pt; color: #333; }
-.flag { color: #a02010; font-weight: bold; }
+.flag { color: #a02010; font-weight: bold; font-size: 8pt; line-height: 1.1; display: block; }
 code { font-size: 8.5pt; overflow-wrap: anywhere; }
 @media print { body { margin: 0; padding: 0; max-width: none; } .wide { overflow: visible; } }
 )";

@@ -53,15 +53,18 @@ std::string accuracy_section(const Calibration& c) {
 }
 
 std::string parameter_section(const Calibration& c) {
-  Rows rows{{"parameter", "unit", "nominal", "corrected", "deviation", "standard deviation", "95 % interval of the deviation",
-             "from the measurements", ""}};
+  Rows rows{{"parameter", "nominal", "corrected", "deviation", "standard deviation", "95 % interval of the deviation",
+             "from the measurements"}};
   for (const EstimatedParameter& p : c.parameters) {
     const bool angle = is_angle(p.id);
     const double factor = angle ? degrees : 1e3;
-    rows.push_back({name(p.id), angle ? "deg" : "mm", number_cell(p.nominal * factor, 4), number_cell((p.nominal + p.deviation) * factor, 4),
+    rows.push_back({"<span class=\"nowrap\">" + name(p.id) + (angle ? " [deg]" : " [mm]") + "</span>" +
+                        (p.identifiable ? "" : "<span class=\"flag\">not identifiable from these poses</span>"),
+                    number_cell(p.nominal * factor, 4),
+                    number_cell((p.nominal + p.deviation) * factor, 4),
                     number_cell(p.deviation * factor, 4), number_cell(p.standard_deviation * factor, 4),
-                    number_cell(p.low * factor, 4) + " &hellip; " + number_cell(p.high * factor, 4), number_cell(100 * p.resolution, 0) + " %",
-                    p.identifiable ? "" : "<span class=\"flag\">not identifiable from these poses</span>"});
+                    number_cell(p.low * factor, 4) + " &hellip; " + number_cell(p.high * factor, 4),
+                    number_cell(100 * p.resolution, 0) + " %"});
   }
   std::string text = table(rows);
   text += paragraph("Intervals cover the geometry: the noise of the measurements and the bias of regularization. Compliance, "
@@ -180,10 +183,7 @@ std::string report_html(const Calibration& c, const ReportContext& context) {
       rows.push_back({escaped(each.rule), scientific(each.lambda), scientific(each.residual_norm), scientific(each.solution_norm)});
     }
     choice += table(rows) + shown(lambda_index);
-    if (std::none_of(lambda->choices.begin(), lambda->choices.end(),
-                     [](const RuleChoice& each) { return each.rule.starts_with("corner"); })) {
-      choice += paragraph("The L-curve has no corner here.");
-    }
+    if (!lambda->silent.empty()) choice += paragraph("Rules without a choice here:") + list(lambda->silent);
   }
   body += section("Regularization", choice);
   body += section("Registration and target", frames_section(c));

@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include "offline/identify/regularized.hpp"
 #include "offline/report/html.hpp"
 #include "offline/simulate/family.hpp"
 #include "offline/simulate/simulate.hpp"
@@ -49,12 +50,21 @@ TEST(Report, HoldsEverySectionAndEveryFigure) {
   EXPECT_NE(html.find(escaped(sample().verdict)), std::string::npos);
   EXPECT_NE(html.find("arm &lt;7&gt; &amp; &quot;friends&quot;"), std::string::npos);
   for (const EstimatedParameter& p : sample().parameters) {
-    EXPECT_NE(html.find("<td>" + name(p.id) + "</td>"), std::string::npos) << name(p.id);
+    EXPECT_NE(html.find('>' + name(p.id) + (is_angle(p.id) ? " [deg]" : " [mm]") + "</span>"), std::string::npos) << name(p.id);
   }
   for (const std::string& outlier : sample().train.outliers) {
     EXPECT_NE(html.find("<td>" + outlier + "</td><td>training</td>"), std::string::npos) << outlier;
   }
   EXPECT_NE(html.find(number_cell(sample().test->after.mean, 4)), std::string::npos);
+  // Each rule has its mark on the L-curve and its line in the table, or is named among those without a choice.
+  for (const auto& [rule, unused] : lambda_rules) {
+    const std::string word(rule);
+    const bool chosen = word == sample().lambda.rule;
+    const bool table = html.find("<td>" + word + (chosen ? " (chosen)" : "") + "</td>") != std::string::npos;
+    const bool mark = html.find('>' + word + (chosen ? " (chosen)" : "") + "</tspan>") != std::string::npos;
+    EXPECT_EQ(table, mark) << word;
+    EXPECT_NE(table, html.find("<li>" + word + ": ") != std::string::npos) << word;
+  }
   EXPECT_EQ(html.find("<script"), std::string::npos);
   EXPECT_EQ(html.find(">nan"), std::string::npos);
 }
@@ -71,7 +81,7 @@ TEST(Report, WithoutGnuplotSaysSoAndKeepsItsTables) {
   setenv("PATH", path.c_str(), 1);
   EXPECT_NE(html.find("This report has no figures: gnuplot"), std::string::npos);
   EXPECT_EQ(html.find("<svg"), std::string::npos);
-  EXPECT_NE(html.find("<td>alpha2</td>"), std::string::npos);
+  EXPECT_NE(html.find(">alpha2 [deg]</span>"), std::string::npos);
 }
 
 // Opened as a user would: nothing is fetched but the file itself, and the console stays silent.
