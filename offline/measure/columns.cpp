@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "offline/measure/columns.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace mdhcal::offline {
@@ -37,7 +38,7 @@ Column Columns::find(const std::string& name, const Unit& unit) {
         stated = millimetre;
       } else if (is_length(unit) && suffix == "m") {
         stated = metre;
-      } else if (is_angle(unit) && suffix == "deg") {
+      } else if (is_angle(unit) && (suffix == "deg" || suffix == "\xC2\xB0")) {  // or a degree sign
         stated = degree;
       } else if (is_angle(unit) && suffix == "rad") {
         stated = radian;
@@ -79,6 +80,12 @@ std::vector<Column> Columns::find_all(std::initializer_list<std::string> names, 
 
 std::vector<Column> Columns::joints(const Geometry& geometry, const Unit& angle, const Unit& length,
                                     const std::string& prefix, const std::string& suffix, bool must) {
+  const auto begins = [&](const std::string& letter) {
+    const std::string first = letter + '1' + suffix;
+    return std::any_of(csv_.names().begin(), csv_.names().end(),
+                       [&](const std::string& name) { return name == first || name.starts_with(first + '_'); });
+  };
+  if (prefix == "q" && !begins("q") && begins("j")) return joints(geometry, angle, length, "j", suffix, must);
   const auto count = static_cast<std::size_t>(geometry.joint_count);
   std::vector<Column> columns;
   for (std::size_t i = 0; i < count; ++i) {

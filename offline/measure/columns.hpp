@@ -39,8 +39,8 @@ class Columns {
   /// Columns of several names that are there all or not at all: empty, or one each.
   std::vector<Column> find_all(std::initializer_list<std::string> names, const Unit& unit);
 
-  /// The joint readings `PREFIX1SUFFIX` ... of a robot, by default in `angle` and `length`. Empty if there is none and
-  /// `must` is false; InputError for a wrong number of them.
+  /// The joint readings `PREFIX1SUFFIX` ... of a robot, by default in `angle` and `length`; J1 ... where there is no q1.
+  /// Empty if there is none and `must` is false; InputError for a wrong number of them.
   std::vector<Column> joints(const Geometry& geometry, const Unit& angle, const Unit& length, const std::string& prefix,
                              const std::string& suffix, bool must);
 

@@ -34,6 +34,9 @@ std::string plain_name(std::string_view text) {
   return name;
 }
 
+// "//" is what tracker software puts before the lines that describe its frame.
+bool is_comment(std::string_view line) { return line.starts_with('#') || line.starts_with("//"); }
+
 // The separator that the header uses outside quotes: tab before semicolon before comma.
 char separator_of(std::string_view header) {
   bool quoted = false;
@@ -71,7 +74,7 @@ Csv::Csv(std::string_view text, std::string path, const std::string& expected) :
   while (start < text_.size()) {
     const std::size_t end = std::min(text_.find('\n', start), text_.size());
     const std::string_view line = trimmed(text_.substr(start, end - start));
-    if (!line.empty() && line.front() != '#') {
+    if (!line.empty() && !is_comment(line)) {
       separator_ = separator_of(line);
       break;
     }
@@ -94,7 +97,7 @@ bool Csv::next() {
     line_start_ = at_;
     std::size_t first = at_;
     while (first < text_.size() && (text_[first] == ' ' || text_[first] == '\r')) ++first;
-    if (first < text_.size() && text_[first] == '#') {
+    if (is_comment(text_.substr(first, 2))) {
       const std::size_t end = text_.find('\n', first);
       at_ = end == std::string_view::npos ? text_.size() : end + 1;
       ++next_line_;

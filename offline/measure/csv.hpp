@@ -8,7 +8,7 @@
 namespace mdhcal::offline {
 
 /// A table of comma, semicolon or tab separated values with a header, read row by row. UTF-8 with or without byte
-/// order mark, LF or CRLF; blank lines, rows of nothing but separators and lines that start with `#` are skipped; fields
+/// order mark, LF or CRLF; blank lines, rows of nothing but separators and lines that start with `#` or `//` are skipped; fields
 /// may be quoted ("" for a quote). With semicolons and tabs a number may have a decimal comma. Every error is an
 /// InputError that names file, line and column (counted in bytes, from 1).
 class Csv {

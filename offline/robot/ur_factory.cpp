@@ -24,7 +24,9 @@ constexpr std::array<const char*, ur_joints> ur_names{"shoulder", "upper_arm", "
                                                       "wrist_1",  "wrist_2",   "wrist_3"};
 constexpr std::array<const char*, 6> coordinates{"x", "y", "z", "roll", "pitch", "yaw"};
 
-// The lengths by which the models differ: d1, a2, a3, d4, d5, d6 [m]. All share the twists.
+// The lengths by which the models differ: d1, a2, a3, d4, d5, d6 [m]. All share the twists. From Universal Robots' support
+// article "DH Parameters for calculations of kinematics and dynamics" (UR3e, UR5e, UR10e, UR20) and the
+// default_kinematics.yaml of each arm in ROS-Industrial's ur_description (UR3, UR5, UR10, UR16e, UR30).
 struct UrModel {
   const char* name;
   double d1, a2, a3, d4, d5, d6;

@@ -7,8 +7,8 @@
 #include "offline/robot/convention.hpp"
 #include "offline/robot/robot.hpp"
 #include "offline/robot/rotation.hpp"
-#include "tests/support/program.hpp"
 #include "offline/simulate/random.hpp"
+#include "tests/robot/factory_table.hpp"
 #include "tests/support/shared_data.hpp"
 #include "tests/support/wide_frame.hpp"
 
@@ -41,19 +41,6 @@ Difference difference(const std::vector<StandardLink>& table, const Geometry& ge
     worst.rotation = std::max(worst.rotation, rotation_difference(truth, pose));
   }
   return worst;
-}
-
-std::vector<StandardLink> factory_table(const std::string& path) {
-  // Read apart from the reader under test: the numbers after "d =" and so on, in the file's order.
-  std::vector<StandardLink> table;
-  const std::string text = read_bytes(path);
-  std::size_t at = 0;
-  while ((at = text.find("[[link]]", at)) != std::string::npos) {
-    const auto value = [&](const char* key) { return std::stod(text.substr(text.find(key, at) + std::string(key).size())); };
-    table.push_back({value("\ntheta = "), value("\nd = "), value("\na = "), value("\nalpha = ")});
-    ++at;
-  }
-  return table;
 }
 
 MDHCAL_SHARED_DATA_TEST(Convention, FactoryRobotsKeepTheirPosesAndLoseTheirLongLengths) {

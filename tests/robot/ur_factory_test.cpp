@@ -2,15 +2,19 @@
 #include "offline/robot/ur_factory.hpp"
 
 #include <cmath>
+#include <tuple>
 
 #include <gtest/gtest.h>
 
 #include "offline/error.hpp"
 #include "offline/robot/rotation.hpp"
+#include "offline/robot/units.hpp"
 #include "offline/simulate/family.hpp"
 #include "offline/simulate/random.hpp"
 #include "offline/simulate/simulate.hpp"
 #include "tests/robot/eigen_chain.hpp"
+#include "tests/robot/factory_table.hpp"
+#include "tests/support/shared_data.hpp"
 
 namespace {
 
@@ -94,6 +98,46 @@ TEST(UrFactory, AControllersCorrectionGivesItsPosesWithoutRunawayLengths) {
   for (const Link& link : robot.geometry.link) {
     EXPECT_LT(std::abs(link.d_m), 1.3);
     EXPECT_LT(std::abs(link.a_m), 1.3);
+  }
+}
+
+// Two real units: what their controllers add to the published table, written as a calibration.conf and read back, gives the
+// standard-DH poses of the shared files. Where axes are not parallel the additions are small, which speaks for the tables.
+MDHCAL_SHARED_DATA_TEST(UrFactory, RealUnitsComeBackThroughTheirCorrections) {
+  constexpr double right = 1.57079632679489662;
+  const auto published = [](double d1, double a2, double a3, double d4, double d5, double d6) {
+    return std::vector<StandardLink>{{0, d1, 0, right}, {0, 0, a2, 0}, {0, 0, a3, 0}, {0, d4, 0, right}, {0, d5, 0, -right}, {0, d6, 0, 0}};
+  };
+  const std::tuple<const char*, const char*, std::vector<StandardLink>> units[] = {
+      {"ur_factory/ur10_a.toml", "ur10", published(0.1273, -0.612, -0.5723, 0.163941, 0.1157, 0.0922)},
+      {"ur_factory/ur10e_c.toml", "ur10e", published(0.1807, -0.6127, -0.57155, 0.17415, 0.11985, 0.11655)}};
+  for (const auto& [file, model, nominal] : units) {
+    const std::vector<StandardLink> unit = mdhcal::tests::factory_table(mdhcal::tests::shared_data(file));
+    ASSERT_EQ(unit.size(), 6U);
+    std::string theta, a, d, alpha;
+    Table table{};
+    for (std::size_t i = 0; i < 6; ++i) {
+      const std::string comma = i == 0 ? "" : ", ";
+      theta += comma + shortest_decimal(unit[i].theta_rad);
+      a += comma + shortest_decimal(unit[i].a_m - nominal[i].a_m);
+      d += comma + shortest_decimal(unit[i].d_m - nominal[i].d_m);
+      alpha += comma + shortest_decimal(unit[i].alpha_rad - nominal[i].alpha_rad);
+      table[i] = {unit[i].theta_rad, unit[i].d_m, unit[i].a_m, unit[i].alpha_rad};
+      if (i >= 1 && i <= 3) continue;
+      EXPECT_NEAR(unit[i].a_m, nominal[i].a_m, 2e-3) << file << ' ' << i;
+      EXPECT_NEAR(unit[i].d_m, nominal[i].d_m, 2e-3) << file << ' ' << i;
+      EXPECT_NEAR(unit[i].alpha_rad, nominal[i].alpha_rad, 2e-3) << file << ' ' << i;
+    }
+    const std::string conf = "delta_theta = [" + theta + "]\ndelta_a = [" + a + "]\ndelta_d = [" + d + "]\ndelta_alpha = [" +
+                             alpha + "]\n";
+    const Robot corrected = parse_ur_calibration(conf, "calibration.conf", model);
+    Random random(5);
+    for (int pose = 0; pose < 50; ++pose) {
+      double q[max_joints];
+      random_readings(random, q);
+      const Eigen::Isometry3d truth(standard_flange(table, q).cast<double>());
+      EXPECT_LT(difference(flange(corrected, q), truth), 1e-12) << file;
+    }
   }
 }
 
