@@ -28,9 +28,11 @@ std::string flags_of(const CLI::Option& option) {
   return flags;
 }
 
-// The lines of the two case statements that one command gives: its options, and the words behind an option.
-void describe(const std::string& name, const CLI::App& command, std::string& options, std::string& words) {
-  options += "    " + name + ") options=\"";
+// The lines of the two case statements that one command gives: its options beside the `common` ones, and the words behind
+// an option.
+void describe(const std::string& name, const CLI::App& command, const std::string& common, std::string& options,
+              std::string& words) {
+  options += "    " + name + ") options=\"" + common;
   for (const CLI::Option* option : command.get_options()) {
     options += flags_of(*option);
     const std::string allowed = words_of(*option);
@@ -47,10 +49,12 @@ void describe(const std::string& name, const CLI::App& command, std::string& opt
 
 std::string bash_script(const CLI::App& app) {
   std::string commands, options, words;
-  describe("\"\"", app, options, words);
+  describe("\"\"", app, "", options, words);
+  // What stands before a command may stand behind it too.
+  const std::string common = " --quiet --verbose";
   for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; })) {
     commands += ' ' + command->get_name();
-    describe(command->get_name(), *command, options, words);
+    describe(command->get_name(), *command, common, options, words);
   }
   return "# bash completion of mdhcal: source <(mdhcal completion bash)\n"
          "_mdhcal() {\n"

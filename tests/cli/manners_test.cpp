@@ -3,6 +3,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <iterator>
+#include <regex>
+#include <set>
+#include <sstream>
 
 #include "tests/cli/cli.hpp"
 
@@ -104,6 +108,39 @@ complete_line mdhcal --v
   const Outcome run = run_program("bash", {folder / "complete.sh"});
   EXPECT_EQ(run.exit_code, 0) << run.err;
   EXPECT_EQ(run.out, "forward\npack\n--frame\ntracker\n--version --verbose\n") << run.err;
+}
+
+// The long options that a text names at the beginning of its lines, as --help lists them.
+std::set<std::string> options_of(const std::string& help) {
+  std::set<std::string> options;
+  const std::regex option(R"((?:^|\n)  (?:-\w,)?(--[\w-]+))");
+  for (std::sregex_iterator at(help.begin(), help.end(), option), end; at != end; ++at) options.insert((*at)[1]);
+  return options;
+}
+
+TEST(CommandLine, BashCompletesEveryCommandAndOptionOfTheHelp) {
+  const TemporaryFolder folder;
+  std::string script = run_mdhcal({"completion", "bash"}).out +
+                       "complete_line() { COMP_WORDS=(\"$@\"); COMP_CWORD=$(( $# - 1 )); COMPREPLY=(); _mdhcal; "
+                       "echo \"${COMPREPLY[*]}\"; }\ncomplete_line mdhcal ''\ncomplete_line mdhcal --\n";
+  const auto names = commands();
+  for (const std::string& name : names) script += "complete_line mdhcal " + name + " --\n";
+  write_bytes(folder / "complete.sh", script);
+  std::istringstream lines(run_program("bash", {folder / "complete.sh"}).out);
+  const auto next_line = [&] {
+    std::string line;
+    std::getline(lines, line);
+    std::istringstream words(line);
+    return std::set<std::string>(std::istream_iterator<std::string>(words), {});
+  };
+  EXPECT_EQ(next_line(), std::set<std::string>(names.begin(), names.end()));
+  EXPECT_EQ(next_line(), options_of(run_mdhcal({"--help"}).out));
+  for (const std::string& name : names) {
+    auto expected = options_of(run_mdhcal({name, "--help"}).out);
+    EXPECT_TRUE(expected.contains("--help")) << name;
+    expected.insert({"--quiet", "--verbose"});
+    EXPECT_EQ(next_line(), expected) << name;
+  }
 }
 
 }  // namespace
