@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <cmath>
+#include <cstdio>
+#include <numbers>
 
 #include <Eigen/Geometry>
 #include <gtest/gtest.h>
@@ -7,10 +9,14 @@
 #include "offline/assess/distributions.hpp"
 #include "offline/assess/iso9283.hpp"
 #include "offline/assess/monitor.hpp"
-#include "offline/simulate/random.hpp"
+#include "offline/identify/calibrate.hpp"
+#include "offline/robot/rotation.hpp"
+#include "offline/simulate/family.hpp"
+#include "offline/simulate/simulate.hpp"
 
 namespace {
 
+using namespace mdhcal;
 using namespace mdhcal::offline;
 
 // Quantiles from printed tables of F, and closed forms.
@@ -46,6 +52,20 @@ TEST(Iso9283, FiguresOfASquareOfPoints) {
   EXPECT_EQ(result.repeated, 2u);
   EXPECT_EQ(result.fewest_visits, 3u);
   EXPECT_NEAR(result.largest_repeatability_mm, 2.5, 1e-14);
+}
+
+// In the limit of many visits with equal normal errors in all axes the distances are Maxwell distributed: mean
+// sigma sqrt(8 / pi), standard deviation sigma sqrt(3 - 8 / pi); AP goes to the bias.
+TEST(Iso9283, FiguresOfNormalScatterAreThoseOfMaxwell) {
+  Random random(3);
+  const double sigma = 0.05, pi = std::numbers::pi;
+  std::vector<Visit> visits;
+  for (int k = 0; k < 40000; ++k) {
+    visits.push_back({"P", {0.3 + sigma * random.normal(), -0.4 + sigma * random.normal(), sigma * random.normal()}});
+  }
+  const PoseTest pose = iso9283(visits).poses.at(0);
+  EXPECT_NEAR(pose.accuracy_mm, 0.5, 4 * sigma / 200);
+  EXPECT_NEAR(pose.repeatability_mm, sigma * (std::sqrt(8 / pi) + 3 * std::sqrt(3 - 8 / pi)), 0.01 * sigma * 3.6);
 }
 
 // Check series of `count` rows whose axes have standard deviation `sd_mm`.
@@ -87,6 +107,51 @@ TEST(Monitor, TellsAMovedTrackerFromAChangedArm) {
   }
   EXPECT_GT(frame, 190);
   EXPECT_GT(arm, 190);
+}
+
+// Whole calibrations of simulated arms, judged on 100 held-out poses, then checked on ten more: unchanged arms raise an alarm
+// as often as alpha says, and one joint's zero point lost by a tenth of a degree is found.
+TEST(Monitor, UnchangedCalibratedArmsPassAndAChangedOneIsFound) {
+  constexpr int arms = 300;
+  constexpr std::size_t reference = 100;
+  constexpr double alpha = 0.05, change_rad = 0.1 * std::numbers::pi / 180;
+  int alarms = 0, found = 0, called_frame = 0;
+  for (int arm = 0; arm < arms; ++arm) {
+    SimulationOptions options;
+    options.seed = 500 + static_cast<std::uint64_t>(arm);
+    options.test_configurations = reference + 10;
+    const Simulation s = simulate(family_robot(family_names()[static_cast<std::size_t>(arm) % 4]), options);
+    const Calibration c = calibrate(s.nominal, s.train, {}, &s.test);
+    Estimate changed;
+    changed.geometry = s.truth.geometry;
+    changed.geometry.link[2].theta_rad += change_rad;
+    changed.tracker_T_base = frame_of(*s.truth.tracker_T_base);
+    changed.flange_p_m = {s.truth.targets[0].flange_p_m};
+    const Model identified(c.estimate), now(changed);
+    Random noise(options.seed);
+    double mean_mm = 0;
+    std::vector<Vector3> predicted, measured, measured_now;
+    for (std::size_t i = 0; i < s.test.rows.size(); ++i) {
+      const Measurement& row = s.test.rows[i];
+      const Vector3 p = identified.target_position(row.q.data(), 0), m = row.position_m;
+      if (i < reference) {
+        mean_mm += 1e3 * std::hypot(p[0] - m[0], p[1] - m[1], p[2] - m[2]) / reference;
+        continue;
+      }
+      predicted.push_back(p);
+      measured.push_back(m);
+      measured_now.push_back(now.target_position(row.q.data(), 0));
+      for (double& x : measured_now.back()) x += options.noise_m * noise.normal();
+    }
+    alarms += monitor(predicted, measured, mean_mm, reference, alpha).condition != Condition::good;
+    const Condition after = monitor(predicted, measured_now, mean_mm, reference, alpha).condition;
+    found += after == Condition::recalibrate;
+    called_frame += after == Condition::frame_moved;
+  }
+  std::printf("%d false alarms of %d at alpha %.2f; %d of the changed arms found, %d taken for a moved frame\n", alarms, arms,
+              alpha, found, called_frame);
+  EXPECT_NEAR(alarms, alpha * arms, 4 * std::sqrt(alpha * (1 - alpha) * arms));
+  EXPECT_GT(found, arms * 98 / 100);
 }
 
 }  // namespace
