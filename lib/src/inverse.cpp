@@ -101,6 +101,7 @@ Status tick(const Arm<Real>& arm, const TickOptions<Real>& options, const Pose<R
   state.options = &options;
   to_frame(base_T_flange, state.target);
   state.length_m = length_unit(arm);
+  state.last = q;
   for (std::int32_t j = 0; j < arm.joint_count; ++j) {
     state.q[j] = q[j];
     set_bounds(state, j, q[j]);

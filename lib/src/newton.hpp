@@ -4,7 +4,6 @@
 
 #include "real.hpp"
 #include "rotation.hpp"
-#include "svd.hpp"
 
 namespace mdhcal {
 namespace {

@@ -18,6 +18,7 @@ struct TickState {
   Frame<Real> target;
   Real length_m;                         ///< what lengths are divided by
   Real low[max_joints], high[max_joints]; ///< where this tick may leave the joints; last joints are inside
+  const Real* last;                      ///< last joints
   Real q[max_joints];                    ///< in: last joints; out: the result
   PoseError error;                       ///< of the result
   Real smallest_singular_value;

@@ -141,9 +141,9 @@ std::uint64_t golden_hash(int operations) {
 /// where a result does; if it is one of forward() or tick(), arithmetic_id (mdhcal/self_test.hpp) changes as well.
 inline constexpr int golden_operations = 100000;
 inline constexpr int golden_short = 1000;
-inline constexpr std::uint64_t golden_double = 0x2b80710f4113aa0aULL;
-inline constexpr std::uint64_t golden_float = 0xcd92971b8e5e2cfdULL;
-inline constexpr std::uint64_t golden_double_short = 0x108b3ac3aac72ab7ULL;
-inline constexpr std::uint64_t golden_float_short = 0x8d83222449dce00fULL;
+inline constexpr std::uint64_t golden_double = 0x43582f00733303aeULL;
+inline constexpr std::uint64_t golden_float = 0x0505ab8c9054906bULL;
+inline constexpr std::uint64_t golden_double_short = 0xdcfc2a2045ec50ebULL;
+inline constexpr std::uint64_t golden_float_short = 0x19d0cc44c9620b00ULL;
 
 }  // namespace mdhcal::test

@@ -21,7 +21,8 @@ struct TickOptions {
   Real max_step[max_joints];    ///< bound of |result - last joints|, each joint, for the whole tick; > 0 [rad] or [m]
   Real position_weight;         ///< weight of the position error over the reach where not all can be met; > 0 [1]
   Real rotation_weight;         ///< weight of the rotation error there; > 0 [1]
-  std::int32_t max_iterations;  ///< bound of evaluations of the arm in one tick, 1 ... max_tick_iterations
+  std::int32_t max_iterations;  ///< bound of evaluations of the arm in one tick, 1 ... max_tick_iterations; where the
+                                ///< pose cannot be met up to two more
   Task task;
   Real posture[max_joints];     ///< where joints that the task leaves free should go [rad] or [m]
   Real posture_gain;            ///< part of the way to it in one tick, 0 (off) ... 1
@@ -34,8 +35,8 @@ template <class Real>
 struct TickReport {
   Real position_error_m;        ///< of the result, from the forward model [m]
   Real rotation_error_rad;      ///< likewise, of the part that the task asks for [rad]
-  Real smallest_singular_value; ///< of the Jacobian of the task, lengths over Arm::reach_m; a lower bound within a
-                                ///< factor of sqrt(6) if the status is ok
+  Real smallest_singular_value; ///< of the Jacobian of the task, lengths over Arm::reach_m; where Newton's method met
+                                ///< the pose, a lower bound within a factor of sqrt(6)
   std::int32_t iterations;      ///< evaluations of the arm
   std::uint32_t step_mask;      ///< bit i: joint i rests on its step limit
   std::uint32_t limit_mask;     ///< bit i: joint i rests on a joint limit, or is outside it
@@ -52,9 +53,10 @@ TickOptions<float> default_tick_options(const Arm<float>& arm) noexcept;
 /// small within the limits instead, and the result is usable all the same.
 ///
 /// The regular case is Newton's method on the Jacobian's QR factors. Where that would break a limit or does not
-/// contract, the step is a damped least-squares one in the singular basis (Wampler 1986; Nakamura, Hanafusa 1986),
-/// with the least damping that keeps every limit; along the weakest singular direction it is the root of the
-/// second-order model, which never crosses a fold of the arm (a straight elbow) to the other branch.
+/// contract, it is damped least squares within the bounds (Levenberg 1944, Marquardt 1963), the damping by the error
+/// (Yamashita, Fukushima 2001; Sugihara 2011). If that does not meet the pose either, the tick starts again from the last
+/// joints with the caller's weights: a singularity where the arm loses a turn (a wrist's) is passed at rest; one where
+/// it loses a shift (a straight elbow) is a fold, and the arm stays on its side of it.
 ///
 /// Returns ok (met, confirmed by forward()); joint_limited (short of the target at a joint limit, or a joint is
 /// outside one); near_singular; step_limited; out_of_reach; not_converged; bad_input (q untouched): an option out of

@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: MIT
+// Private to lib/src; include after real.hpp. The part of a pose that a task asks for, and its Jacobian.
+#pragma once
+
+#include "box_least_squares.hpp"
+#include "tick.hpp"
+
+namespace mdhcal {
+namespace {
+
+/// How many components the error of a task has.
+inline std::int32_t task_rank(Task task) {
+  switch (task) {
+    case Task::pose: return 6;
+    case Task::position_axis: return 5;
+    case Task::position:
+    case Task::planar: return 3;
+  }
+  return 6;
+}
+
+/// The components that the task asks for of a displacement of the flange: lengths over the arm's, angles times
+/// `rotation_weight`.
+inline void to_task(const TickState& state, const Frame<Real>& frame, Real rotation_weight, const Real* displacement,
+                    Real* component) {
+  const Real per_length = Real{1} / state.length_m;
+  const Real* turn = displacement + 3;
+  component[0] = displacement[0] * per_length;
+  component[1] = displacement[1] * per_length;
+  component[2] = displacement[2] * per_length;
+  switch (state.options->task) {
+    case Task::pose:
+      for (int k = 0; k < 3; ++k) component[3 + k] = turn[k] * rotation_weight;
+      return;
+    case Task::position_axis:
+      // The z axis turns about the flange's x and y axes.
+      for (int k = 0; k < 2; ++k) {
+        const Real* r = frame.rotation + k;
+        component[3 + k] = (r[0] * turn[0] + r[3] * turn[1] + r[6] * turn[2]) * rotation_weight;
+      }
+      return;
+    case Task::planar: component[2] = turn[2] * rotation_weight; return;
+    case Task::position: return;
+  }
+}
+
+/// The linear functional of displacements that takes the even components' product with u: the transpose of to_task().
+inline void from_task(const TickState& state, const Frame<Real>& frame, const Real* u, Real* functional) {
+  const Real per_length = Real{1} / state.length_m;
+  for (int k = 0; k < 3; ++k) functional[k] = u[k] * per_length;
+  for (int k = 3; k < 6; ++k) functional[k] = 0;
+  switch (state.options->task) {
+    case Task::pose:
+      for (int k = 3; k < 6; ++k) functional[k] = u[k];
+      return;
+    case Task::position_axis:
+      for (int k = 0; k < 3; ++k) {
+        functional[3 + k] = frame.rotation[3 * k] * u[3] + frame.rotation[3 * k + 1] * u[4];
+      }
+      return;
+    case Task::planar:
+      functional[2] = 0;
+      functional[5] = u[2];
+      return;
+    case Task::position: return;
+  }
+}
+
+/// Rows of the task's Jacobian by unit-free readings, from the one by joint coordinate.
+inline void linearise(const TickState& state, const Frame<Real>& frame, const Jacobian<Real>& coordinates,
+                      Real rotation_weight, BoxProblem& problem) {
+  const Arm<Real>& arm = *state.arm;
+  for (std::int32_t j = 0; j < arm.joint_count; ++j) {
+    Real column[6] = {0, 0, 0, 0, 0, 0};
+    const Real unit = joint_unit(state, j);
+    for (std::int32_t i = 0; i < arm.joint_count; ++i) {
+      if (arm.coupled == 0 && i != j) continue;
+      const Real ratio = unit * arm.map[i][j];
+      for (int k = 0; k < 6; ++k) column[k] += ratio * coordinates.column[i][k];
+    }
+    Real component[6];
+    to_task(state, frame, rotation_weight, column, component);
+    for (std::int32_t i = 0; i < problem.rows; ++i) problem.row[i][j] = component[i];
+  }
+}
+
+}  // namespace
+}  // namespace mdhcal

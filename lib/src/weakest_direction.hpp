@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: MIT
+// Private to lib/src; include after real.hpp. The smallest singular value of the task's Jacobian and how it changes.
+#pragma once
+
+#include "task.hpp"
+
+namespace mdhcal {
+namespace {
+
+/// s = u . J v, the smallest singular value with its vectors, lengths over the arm's.
+struct Weakest {
+  Real s;
+  Real u[6];
+  Real v[max_joints];
+};
+
+/// From the rows of `problem`, whose angles carry `rotation_weight`: four steps of inverse iteration on the triangle of
+/// J or of its transpose, whichever has fewer columns.
+[[gnu::noinline]] void find_weakest(const BoxProblem& problem, Task task, Real rotation_weight, Weakest& weakest) {
+  // Far below any singular value that matters, and far above what would overflow in two solutions.
+  constexpr Real floor = sizeof(Real) == sizeof(double) ? Real(1e-11) : Real(1e-7);
+  const std::int32_t rows = task_rank(task);
+  const std::int32_t columns = problem.columns;
+  const bool wide = columns > rows;
+  const Real per_weight = Real{1} / rotation_weight;
+  const std::int32_t turn = task == Task::planar ? 2 : 3;
+  Triangle triangle;
+  start(triangle, wide ? rows : columns, floor);
+  const std::int32_t size = triangle.size;
+  for (std::int32_t k = 0; k < (wide ? columns : rows); ++k) {
+    Real r[max_joints];
+    for (std::int32_t i = 0; i < size; ++i) {
+      const std::int32_t row = wide ? i : k;
+      r[i] = problem.row[row][wide ? k : i] * (row < turn ? Real{1} : per_weight);
+    }
+    add_equation(triangle, r, Real{0});
+  }
+  Real* x = wide ? weakest.u : weakest.v;
+  Real* y = wide ? weakest.v : weakest.u;
+  // Any start will do that is not orthogonal to what is sought; unlike entries make that unlikely.
+  for (std::int32_t i = 0; i < size; ++i) x[i] = i % 2 == 0 ? Real{1} : Real(0.7);
+  Real norm = 1;
+  for (int round = 0; round < 4; ++round) {
+    for (std::int32_t i = 0; i < size; ++i) {
+      Real sum = x[i];
+      for (std::int32_t j = 0; j < i; ++j) sum -= triangle.row(j)[i] * x[j];
+      x[i] = sum / triangle.row(i)[i];
+    }
+    solve_upper(triangle, x, x);
+    Real square = 0;
+    for (std::int32_t i = 0; i < size; ++i) square += x[i] * x[i];
+    norm = square_root(square);
+    for (std::int32_t i = 0; i < size; ++i) x[i] /= norm;
+  }
+  weakest.s = Real{1} / square_root(norm);
+  for (std::int32_t k = 0; k < (wide ? columns : rows); ++k) {
+    Real sum = 0;
+    for (std::int32_t i = 0; i < size; ++i) {
+      const std::int32_t row = wide ? i : k;
+      sum += problem.row[row][wide ? k : i] * (row < turn ? Real{1} : per_weight) * x[i];
+    }
+    y[k] = sum / weakest.s;
+  }
+}
+
+/// Change of u . J v by the unit-free readings, u and v held. From the axes alone: the Jacobian's column i changes with
+/// joint coordinate j by z_min(i,j) x p_max(i,j) in its upper half and, if j < i, by z_j x z_i in its lower one
+/// (Bruyninckx, De Schutter 1996).
+[[gnu::noinline]] void slope_of_weakest(const TickState& state, const Frame<Real>& frame,
+                                        const Jacobian<Real>& coordinates, const Weakest& weakest, Real* slope) {
+  const Arm<Real>& arm = *state.arm;
+  const std::int32_t joints = arm.joint_count;
+  Real u[6];
+  from_task(state, frame, weakest.u, u);
+  for (std::int32_t j = 0; j < joints; ++j) slope[j] = 0;
+  for (std::int32_t i = 0; i < joints; ++i) {
+    Real rate = 0;
+    for (std::int32_t j = 0; j < joints; ++j) rate += arm.map[i][j] * joint_unit(state, j) * weakest.v[j];
+    for (std::int32_t k = 0; k < joints; ++k) {
+      const Real* first = coordinates.column[i < k ? i : k];
+      const Real* second = coordinates.column[i < k ? k : i];
+      Real change[6] = {0, 0, 0, 0, 0, 0};
+      add_cross(first + 3, second, rate, change);
+      if (k < i) add_cross(first + 3, second + 3, rate, change + 3);
+      const Real by_coordinate = dot(u, change) + dot(u + 3, change + 3);
+      for (std::int32_t j = 0; j < joints; ++j) slope[j] += arm.map[k][j] * joint_unit(state, j) * by_coordinate;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace mdhcal
