@@ -273,14 +273,16 @@ struct Best {
   Real weight;     ///< of the rotation
   bool passes;     ///< the singularity may be passed
   bool keeps;      ///< the singular value is kept up
+  Real leap;       ///< along the weakest direction, to where the second-order model meets the pose, or 0
 };
 
-/// Starts over from the last joints. What the weakest singular direction asks of the flange decides how to go on. If it
-/// is a turn (a wrist's singularity), the singularity may be passed. If it is a shift (a straight elbow), the arm folds
-/// there; the singular value is kept from falling below a margin, so that the way back is the way that it came. The
-/// caller's weights hold but close to a fold, where the wrist would bend for nothing.
+/// Starts over from the last joints. What the weakest singular direction does decides how to go on. If it turns the
+/// flange, or hardly bends (a wrist's singularity), the singularity may be passed. If it shifts the flange and bends (a
+/// straight elbow), the arm folds there; the singular value is kept from falling below a margin, so that the way back is
+/// the way that it came. The caller's weights hold but close to a fold, where the wrist would bend for nothing.
 [[gnu::noinline]] Best start_over(Search& search, Keep& keep) {
   constexpr Real turning = Real(0.2);
+  constexpr Real bending = Real(0.05);
   constexpr Real margin = Real(0.005);
   TickState& state = *search.state;
   Look look;
@@ -290,14 +292,21 @@ struct Best {
   find_weakest(search.problem, state.options->task, Real{1}, keep.weakest);
   const Real s = keep.weakest.s;
   const Real* u = keep.weakest.u;
+  slope_of_weakest(state, look.frame, look.coordinates, keep.weakest, keep.slope);
+  Real bend = 0;
+  for (std::int32_t j = 0; j < search.problem.columns; ++j) bend += keep.slope[j] * keep.weakest.v[j];
   const bool is_pose = state.options->task == Task::pose;
-  const bool turns = is_pose && dot(u + 3, u + 3) > turning * turning;
-  Best best{Real{1}, turns && s < Real(0.1), false};
+  const bool turns = is_pose && (dot(u + 3, u + 3) > turning * turning || magnitude(bend) < bending);
+  Best best{Real{1}, turns && s < Real(0.1), false, Real{0}};
   // With hardly a singular value left there is no side to keep to.
   best.keeps = !best.passes && s > Real(1e-6);
-  if (best.keeps) {
-    slope_of_weakest(state, look.frame, look.coordinates, keep.weakest, keep.slope);
-    keep.least = s < margin ? s : margin;
+  keep.least = s < margin ? s : margin;
+  // On a fold the error's slope vanishes however far the pose is on either side: bend t^2 / 2 is what there is of it.
+  Real wanted = 0;
+  for (std::int32_t i = 0; i < search.problem.rows; ++i) wanted += u[i] * search.problem.b[i];
+  if (s < Real(0.01) && magnitude(bend) > bending && wanted / bend > Real{0}) {
+    const Real leap = square_root(Real{2} * wanted / bend);
+    if (leap < Real(0.05)) best.leap = wanted > Real{0} ? leap : -leap;
   }
   if (is_pose && (turns || s > Real(0.05))) {
     best.weight = state.options->rotation_weight / state.options->position_weight;
@@ -310,15 +319,27 @@ struct Best {
 /// The best that can be had of a pose that is not met. Where a singularity is passed the weakest direction rests while
 /// its singular value falls, and is caught up while that rises.
 [[gnu::noinline]] void make_the_best(Search& search) {
+  TickState& state = *search.state;
   Keep keep;
-  const Best best = start_over(search, keep);
+  Best best = start_over(search, keep);
+  if (magnitude(best.leap) > Real{0}) {
+    Real q[max_joints];
+    for (std::int32_t j = 0; j < search.problem.columns; ++j) {
+      const Real next = state.last[j] + best.leap * keep.weakest.v[j] * joint_unit(state, j);
+      q[j] = next < state.low[j] ? state.low[j] : (next > state.high[j] ? state.high[j] : next);
+    }
+    start(search, state, q);
+    minimise(search, {care, true, nullptr, false, 6, state.options->max_iterations});
+    if (search.met) return;
+    best = start_over(search, keep);
+  }
   const Real before = keep.weakest.s;
-  const std::int32_t most = search.state->options->max_iterations;
+  const std::int32_t most = state.options->max_iterations;
   const bool weighted = best.weight < Real{1};
   minimise(search, {weighted ? Real{2} * best.weight : care, false, best.keeps ? &keep : nullptr, false,
                     weighted ? 6 : 2, most});
   if (search.met || !weighted) return;
-  find_weakest(search.problem, search.state->options->task, best.weight, keep.weakest);
+  find_weakest(search.problem, state.options->task, best.weight, keep.weakest);
   if (keep.weakest.s > before) minimise(search, {Real(0.001) * best.weight, false, nullptr, false, 6, most});
 }
 
@@ -338,7 +359,7 @@ struct Best {
   set_pull(search, false);
   // A quarter of the evaluations is left for what comes after it.
   const std::int32_t most = (3 * state.options->max_iterations + 3) / 4;
-  if (posture || !hopeless(search)) minimise(search, {care, true, nullptr, posture, 4, most});
+  if (posture || !hopeless(search)) minimise(search, {care, true, nullptr, posture, 6, most});
   if (!search.met) make_the_best(search);
   state.smallest_singular_value = smallest_singular_value(search);
   if (!search.met) find_pushing(search);

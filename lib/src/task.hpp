@@ -19,6 +19,17 @@ inline std::int32_t task_rank(Task task) {
   return 6;
 }
 
+/// What turns about the base's x and y axes do to the direction, seen from above, of the flange's x axis: that of a
+/// tilted axis turns by w_z - tilt . (w_x, w_y).
+inline void tilt_of_x(const Frame<Real>& frame, Real* tilt) {
+  const Real* r = frame.rotation;
+  const Real flat = r[0] * r[0] + r[3] * r[3];
+  // An upright axis has no direction; any tilt will do.
+  const Real scale = flat > Real(1e-6) ? r[6] / flat : Real{0};
+  tilt[0] = scale * r[0];
+  tilt[1] = scale * r[3];
+}
+
 /// The components that the task asks for of a displacement of the flange: lengths over the arm's, angles times
 /// `rotation_weight`.
 inline void to_task(const TickState& state, const Frame<Real>& frame, Real rotation_weight, const Real* displacement,
@@ -39,7 +50,12 @@ inline void to_task(const TickState& state, const Frame<Real>& frame, Real rotat
         component[3 + k] = (r[0] * turn[0] + r[3] * turn[1] + r[6] * turn[2]) * rotation_weight;
       }
       return;
-    case Task::planar: component[2] = turn[2] * rotation_weight; return;
+    case Task::planar: {
+      Real tilt[2];
+      tilt_of_x(frame, tilt);
+      component[2] = (turn[2] - (tilt[0] * turn[0] + tilt[1] * turn[1])) * rotation_weight;
+      return;
+    }
     case Task::position: return;
   }
 }
@@ -59,7 +75,10 @@ inline void from_task(const TickState& state, const Frame<Real>& frame, const Re
       }
       return;
     case Task::planar:
+      tilt_of_x(frame, functional + 3);
       functional[2] = 0;
+      functional[3] *= -u[2];
+      functional[4] *= -u[2];
       functional[5] = u[2];
       return;
     case Task::position: return;

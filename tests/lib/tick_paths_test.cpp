@@ -1,0 +1,177 @@
+// SPDX-License-Identifier: MIT
+// The tick on paths: thinned versions of what tests/bench/sweep.cpp prints.
+#include "tests/lib/tick_paths.hpp"
+
+namespace {
+
+using namespace mdhcal;
+using namespace mdhcal::test;
+
+#if defined(__arm__) || defined(__thumb__)
+constexpr bool slow = true;
+#else
+constexpr bool slow = false;
+#endif
+
+// The position is held to what the tick's tolerance and rounding leave; no joint is faster than its limit; the
+// orientation is lost by no more than twice the angle between the two arms' flanges at the same joints on the path.
+template <class Real>
+void crosses(bool parallel, double errors_mm, double position_m, std::uint64_t seed) {
+  Random random(seed);
+  const Geometry geometry = parallel ? ur5() : wrist_arm();
+  Arm<double> nominal{};
+  ASSERT_EQ(make_arm(geometry, nominal), Status::ok);
+  const int arms = slow ? 1 : 3;
+  for (int n = 0; n < arms; ++n) {
+    const Geometry corrected = with_errors(geometry, random, errors_mm * 1e-3, errors_mm * 0.1 * deg);
+    Arm<double> exact{};
+    Arm<Real> arm{};
+    ASSERT_EQ(make_arm(corrected, exact), Status::ok);
+    ASSERT_EQ(make_arm(corrected, arm), Status::ok);
+    // Under emulation five times as fast: fewer ticks.
+    const Crossing found = cross_wrist<Real>(nominal, exact, arm, parallel, random, slow ? 0.002 : 0.0004);
+    ASSERT_LT(found.turned_rad, 1e-9);
+    EXPECT_LT(found.position_m, position_m) << n;
+    EXPECT_LE(found.step, servo_step) << n;
+    EXPECT_LE(found.rotation_rad, (slow ? 3.0 : 2.0) * found.own_rad) << n;
+    EXPECT_TRUE(found.met) << n;
+  }
+}
+
+TEST(TickPath, CrossesTheWristOfAnArmWithSmallErrors) {
+  crosses<double>(true, 0.1, 2e-6, 31);
+  crosses<double>(false, 0.1, 2e-6, 32);
+}
+TEST(TickPath, CrossesTheWristOfAnArmWithErrors) {
+  crosses<double>(true, 1.0, 2e-6, 33);
+  crosses<double>(false, 1.0, 2e-6, 34);
+}
+TEST(TickPath, CrossesTheWristOfAnArmWithLargeErrors) {
+  crosses<double>(true, 5.0, 2e-6, 35);
+  crosses<double>(false, 5.0, 2e-6, 36);
+}
+TEST(TickPath, CrossesTheWristInFloat) { crosses<float>(true, 1.0, 2e-5, 37); }
+
+// Only where the continuation is unique, see there_and_back(); bench_sweep counts the other postures.
+TEST(TickPath, ComesBackFromOutOfReachOnTheSameJoints) {
+  Random random(41);
+  int unique = 0;
+  for (int n = 0; n < (slow ? 2 : 8); ++n) {
+    const bool parallel = n % 2 == 0;
+    Arm<double> arm{};
+    ASSERT_EQ(make_arm(with_errors(parallel ? ur5() : wrist_arm(), random, 1e-3, 0.1 * deg), arm), Status::ok);
+    double q[6];
+    random_posture(arm, random, q);
+    const double limit = n % 4 < 2 ? servo_step : 1.0;
+    const Excursion found = there_and_back(arm, q, parallel ? 1.5 : 2.0, slow ? 0.004 : 0.0005, slow ? 1.0 : limit);
+    EXPECT_GT(found.unreachable, slow ? 10 : 100) << n;
+    // A regular tick evaluates the arm three times.
+    EXPECT_LE(found.evaluations, 24 * found.unreachable) << n;
+    if (!found.unique) continue;
+    ++unique;
+    EXPECT_LT(found.away_rad, 0.05) << n;
+  }
+  EXPECT_GE(unique, slow ? 1 : 4);
+}
+
+enum class Near { wrist, elbow, both };
+
+template <class Real>
+void meets_near(Near where, double errors_mm, bool limited, int count, std::uint64_t seed) {
+  Random random(seed);
+  const Real tolerance = sizeof(Real) == sizeof(double) ? Real(1e-6) : Real(1e-5);
+  Arm<Real> arm{};
+  for (int n = 0; n < count; ++n) {
+    if (n % 50 == 0) {
+      ASSERT_EQ(make_arm(with_errors(ur5(), random, errors_mm * 1e-3, errors_mm * 0.1 * deg), arm), Status::ok);
+    }
+    Real q[6];
+    for (Real& joint : q) joint = static_cast<Real>(random.symmetric(pi));
+    if (where != Near::elbow) q[4] = static_cast<Real>(random.symmetric(0.01));
+    if (where != Near::wrist) q[2] = static_cast<Real>(random.symmetric(0.01));
+    Pose<Real> target{};
+    ASSERT_EQ(forward(arm, q, target), Status::ok);
+    Real seed_q[6];
+    Real result[6];
+    for (int i = 0; i < 6; ++i) result[i] = seed_q[i] = q[i] + static_cast<Real>(random.symmetric(0.99 * servo_step));
+    TickOptions<Real> options = default_tick_options(arm);
+    options.position_tolerance_m = options.rotation_tolerance_rad = tolerance;
+    if (limited) std::fill(options.max_step, options.max_step + 6, static_cast<Real>(servo_step));
+    ASSERT_EQ(tick(arm, options, target, result), Status::ok) << n;
+    Pose<Real> reached{};
+    ASSERT_EQ(forward(arm, result, reached), Status::ok);
+    ASSERT_LE(position_distance(reached, target), Real(1.1) * tolerance) << n;
+    ASSERT_LE(small_angle(reached, target), Real(1.1) * tolerance) << n;
+    for (int i = 0; i < 6; ++i) {
+      ASSERT_LT(std::fabs(result[i] - q[i]), Real(0.1)) << n;
+      if (limited) {
+        ASSERT_LE(std::fabs(result[i] - seed_q[i]), static_cast<Real>(servo_step)) << n;
+      }
+    }
+  }
+}
+
+TEST(TickNearSingular, MeetsEveryPoseInDouble) {
+  for (const double errors_mm : {0.1, 1.0, 5.0}) {
+    meets_near<double>(Near::wrist, errors_mm, false, cases(2000), 51);
+    meets_near<double>(Near::elbow, errors_mm, false, cases(2000), 52);
+    meets_near<double>(Near::both, errors_mm, false, cases(2000), 53);
+  }
+}
+TEST(TickNearSingular, MeetsEveryPoseWithinTheStepLimit) {
+  for (const double errors_mm : {0.1, 1.0, 5.0}) {
+    meets_near<double>(Near::wrist, errors_mm, true, cases(2000), 54);
+    meets_near<double>(Near::elbow, errors_mm, true, cases(2000), 55);
+  }
+}
+TEST(TickNearSingular, MeetsEveryPoseInFloat) {
+  meets_near<float>(Near::wrist, 1.0, false, cases(2000), 56);
+  meets_near<float>(Near::elbow, 1.0, false, cases(2000), 57);
+}
+
+// Joints exactly on a singularity, the target a step away, on it or off it: the pose is met, or the status is one that
+// forward() confirms.
+TEST(TickSingular, IsHonestFromExactlySingularSeeds) {
+  Random random(61);
+  for (int n = 0; n < cases(3000); ++n) {
+    const bool parallel = n % 2 == 0;
+    const Geometry geometry = parallel ? ur5() : wrist_arm();
+    Arm<double> arm{};
+    ASSERT_EQ(make_arm(n % 4 < 2 ? geometry : with_errors(geometry, random, 1e-3, 0.1 * deg), arm), Status::ok);
+    double q[6];
+    for (double& joint : q) joint = random.symmetric(pi);
+    // Wrist, elbow (straight; the offset arm's forearm in line with its upper arm), shoulder over the base axis.
+    const int kind = n % 3;
+    if (kind == 0) q[4] = 0;
+    if (kind == 1) q[2] = parallel ? 0 : std::atan2(0.64, 0.12) - pi;
+    if (kind == 2) {
+      for (int i = 1; i < 6; ++i) q[i] = 0;
+    }
+    double goal[6];
+    for (int i = 0; i < 6; ++i) goal[i] = q[i] + (n % 5 == 0 ? 0 : random.symmetric(0.003));
+    if (n % 7 < 4 && kind < 2) goal[kind == 0 ? 4 : 2] = q[kind == 0 ? 4 : 2];
+    Pose<double> target{};
+    ASSERT_EQ(forward(arm, goal, target), Status::ok);
+    TickOptions<double> options = default_tick_options(arm);
+    options.position_tolerance_m = options.rotation_tolerance_rad = 1e-6;
+    TickReport<double> report{};
+    const Status status = tick(arm, options, target, q, &report);
+    Pose<double> reached{};
+    ASSERT_EQ(forward(arm, q, reached), Status::ok);
+    const double position = position_distance(reached, target);
+    const double rotation = small_angle(reached, target);
+    ASSERT_NEAR(position, report.position_error_m, 1e-9) << n;
+    ASSERT_NEAR(rotation, report.rotation_error_rad, 1e-6 + 1e-3 * rotation) << n;
+    if (kind < 2) {
+      ASSERT_EQ(status, Status::ok) << n << " " << position << " " << rotation;
+    }
+    ASSERT_EQ(status == Status::ok, position <= 1.001e-6 && rotation <= 1.001e-6) << n;
+    if (status == Status::near_singular) {
+      double s[6];
+      singular_values(arm, q, s);
+      ASSERT_LT(s[0], 0.0101) << n;
+    }
+  }
+}
+
+}  // namespace
