@@ -53,7 +53,7 @@ void one(const Arm<double>& arm, Where where, double limit, Random& random, Coun
   std::copy(seed, seed + 6, result);
   TickReport<double> report{};
   const Status status = tick(arm, options, target, result, &report);
-  counts.most = std::max(counts.most, report.iterations);
+  counts.most = std::max<int>(counts.most, report.iterations);
   Pose<double> reached{};
   if (forward(arm, result, reached) != Status::ok) std::abort();
   const bool met = position_distance(reached, target) <= 1.001 * tolerance &&
@@ -138,7 +138,7 @@ void excursions(const char* name, const Geometry& geometry, double far_m, double
     if (found.unique && found.away_rad <= 0.05) away = std::max(away, found.away_rad);
     unreachable += found.unreachable;
     evaluations += found.evaluations;
-    most = std::max(most, found.most);
+    most = std::max<int>(most, found.most);
     // The cost beside that of a regular tick of the same arm, from a seed within a step.
     TickOptions<double> options = servo_options(arm);
     std::fill(options.max_step, options.max_step + 6, limit);

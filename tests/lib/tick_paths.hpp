@@ -159,7 +159,7 @@ struct Excursion {
   long ticks = 0;                 ///< that met the pose
   long unreachable = 0;           ///< that did not
   long evaluations = 0;           ///< of the unreachable ones
-  int most = 0;                   ///< evaluations of one of them
+  std::int32_t most = 0;          ///< evaluations of one of them
   double step = 0;                ///< largest |dq| of a tick
 };
 
