@@ -34,19 +34,25 @@ struct CState {
   CompensatorState<Real> ramp;
 };
 
+static_assert(sizeof(C(model)) == MDHCAL_MODEL_SIZE && sizeof(C(state)) == MDHCAL_STATE_SIZE);
 static_assert(sizeof(CModel) <= MDHCAL_MODEL_SIZE && sizeof(CState) <= MDHCAL_STATE_SIZE);
 static_assert(alignof(CModel) <= alignof(C(model)) && alignof(CState) <= alignof(C(state)));
 static_assert(MDHCAL_MAX_JOINTS == max_joints && MDHCAL_MAX_SOLUTIONS == max_solutions);
 
+// Whether storage may hold a CModel or a CState: a C program can make a pointer of any address.
+bool usable(const void* storage) {
+  return storage != nullptr && reinterpret_cast<std::uintptr_t>(storage) % alignof(double) == 0;
+}
+
 // Bytes that memcpy made a CModel of; void on the way, since nothing else is known of the storage.
 const CModel* model_in(const C(model)* storage) {
-  if (storage == nullptr) return nullptr;
+  if (!usable(storage)) return nullptr;
   const CModel* model = static_cast<const CModel*>(static_cast<const void*>(storage));
   return model->mark == model_mark ? model : nullptr;
 }
 
 bool read_state(const C(state)* storage, CState& state) {
-  if (storage == nullptr) return false;
+  if (!usable(storage)) return false;
   std::memcpy(&state, storage, sizeof state);
   return state.mark == state_mark;
 }
@@ -142,7 +148,7 @@ using namespace mdhcal;
 
 std::int32_t C(load)(C(model)* model, std::size_t model_size, std::uint32_t abi_version, const std::uint8_t* blob,
                      std::size_t blob_bytes, const mdhcal_demands* demands) {
-  if (model == nullptr || blob == nullptr || model_size != sizeof *model || abi_version != MDHCAL_ABI_VERSION) {
+  if (!usable(model) || blob == nullptr || model_size != sizeof *model || abi_version != MDHCAL_ABI_VERSION) {
     return refused;
   }
   CModel loaded;
@@ -181,7 +187,7 @@ std::int32_t C(forward)(const C(model)* model, std::int32_t which, const Real* q
 
 std::int32_t C(start)(C(state)* state, std::size_t state_size, const C(model)* model, std::int32_t which) {
   const CModel* m = model_in(model);
-  if (m == nullptr || state == nullptr || state_size != sizeof *state) return refused;
+  if (m == nullptr || !usable(state) || state_size != sizeof *state) return refused;
   if (which != MDHCAL_NOMINAL && which != MDHCAL_CORRECTED) return refused;
   const CState made{state_mark, rest(m->models, which == MDHCAL_CORRECTED)};
   std::memcpy(state, &made, sizeof made);

@@ -11,6 +11,9 @@ namespace mdhcal {
 
 namespace {
 
+// A ramp of no time at all: the next advance() is there, however short its period [1/s].
+constexpr Real fastest = Real(1e30);
+
 bool same_joints(const Arm<Real>& a, const Arm<Real>& b) {
   if (a.joint_count != b.joint_count || a.prismatic_mask != b.prismatic_mask) return false;
   for (std::int32_t i = 0; i < a.joint_count; ++i) {
@@ -54,9 +57,9 @@ const Arm<Real>& current(const CompensatorModel<Real>& model, const CompensatorS
   return room;
 }
 
-bool valid(const CompensatorModel<Real>& model, const CompensatorState<Real>& state) {
-  return model.nominal.joint_count == model.corrected.joint_count && state.progress >= Real{0} &&
-         state.progress <= Real{1};
+bool valid(const CompensatorState<Real>& state) {
+  return state.progress >= Real{0} && state.progress <= Real{1} && state.target >= Real{0} && state.target <= Real{1} &&
+         state.rate >= Real{0} && state.rate <= fastest;
 }
 
 }  // namespace
@@ -80,15 +83,14 @@ CompensatorState<Real> rest(const CompensatorModel<Real>&, bool corrected) noexc
 }
 
 Status start_ramp(CompensatorState<Real>& state, bool corrected, Real duration_s) noexcept {
-  if (!(duration_s >= Real{0} && duration_s <= Real(1e6))) return Status::bad_input;
+  if (!valid(state) || !(duration_s >= Real{0} && duration_s <= Real(1e6))) return Status::bad_input;
   state.target = corrected ? Real{1} : Real{0};
-  // No time at all: the next advance() is there, however short its period.
-  state.rate = duration_s > Real(1e-9) ? Real{1} / duration_s : Real(1e30);
+  state.rate = duration_s > Real(1e-9) ? Real{1} / duration_s : fastest;
   return Status::ok;
 }
 
 Status advance(CompensatorState<Real>& state, Real period_s) noexcept {
-  if (!(period_s >= Real{0} && period_s <= Real(1e3))) return Status::bad_input;
+  if (!valid(state) || !(period_s >= Real{0} && period_s <= Real(1e3))) return Status::bad_input;
   const Real step = state.rate * period_s;
   if (state.progress < state.target) {
     state.progress = state.target - state.progress > step ? state.progress + step : state.target;
@@ -101,7 +103,7 @@ Status advance(CompensatorState<Real>& state, Real period_s) noexcept {
 Status pose_to_joints(const CompensatorModel<Real>& model, const CompensatorState<Real>& state,
                       const TickOptions<Real>& options, const Pose<Real>& base_T_flange, Real* q,
                       TickReport<Real>* report) noexcept {
-  if (!valid(model, state)) return Status::bad_input;
+  if (!valid(state)) return Status::bad_input;
   Arm<Real> room;
   return tick(current(model, state, room), options, base_T_flange, q, report);
 }

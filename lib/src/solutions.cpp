@@ -261,7 +261,7 @@ Status cold_start(const Arm<Real>& arm, const SolutionOptions<Real>& options, co
   Search search;
   if (!prepare(arm, options, base_T_flange, q, search)) return Status::bad_input;
   Solutions<Real> found;
-  search_all(search, options.restarts > 0 ? options.restarts : 100, true, found);
+  search_all(search, options.restarts > 0 ? options.restarts : max_restarts, true, found);
   if (found.count == 0) return Status::out_of_reach;
   for (std::int32_t j = 0; j < arm.joint_count; ++j) q[j] = found.q[0][j];
   return Status::ok;

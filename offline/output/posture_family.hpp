@@ -5,8 +5,8 @@
 
 namespace mdhcal::offline {
 
-/// The family of a valid nominal geometry: six turning joints whose axes 4, 5 and 6 meet within 1 mm, or whose axes 2, 3
-/// and 4 are parallel within 1 mrad; else general. Independent of the readings.
+/// The family of a valid nominal geometry, as find_solutions() judges it (family() in mdhcal/solutions.hpp): one judgement,
+/// so that what the blob declares is what the controller does. Independent of the readings.
 PostureFamily posture_family(const Geometry& nominal);
 
 }  // namespace mdhcal::offline

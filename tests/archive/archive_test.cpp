@@ -22,6 +22,7 @@
 #include "tests/lib/golden.hpp"
 
 extern "C" int c_consumer(const std::uint8_t* blob, std::size_t size);
+extern "C" int c_consumer_float(const std::uint8_t* blob, std::size_t size);
 
 namespace {
 
@@ -137,7 +138,8 @@ TEST(CHeader, ServesACProgram) {
   robot.geometry = test::with_errors(test::ur5(), random, 1e-3, 0.1 * test::deg);
   for (std::size_t i = 0; i < max_joints; ++i) robot.nominal[i] = test::ur5().link[i];
   const offline::Blob blob = offline::make_blob(robot, offline::Provenance{});
-  EXPECT_EQ(c_consumer(blob.data(), blob.size()), 0);
+  EXPECT_EQ(c_consumer(blob.data(), blob.size()), 0) << "the line of tests/archive/c_consumer_body.h";
+  EXPECT_EQ(c_consumer_float(blob.data(), blob.size()), 0) << "the line of tests/archive/c_consumer_body.h, in float";
 }
 
 }  // namespace

@@ -120,8 +120,16 @@ void cold_starts(long count, std::uint64_t seed) {
     Pose<double> target{};
     Pose<double> reached{};
     if (forward(arm, q.data(), target) != Status::ok) std::abort();
+    const Joints from = q;
     for (double& joint : q) joint = random.symmetric(pi);
-    if (cold_start(arm, default_solution_options(arm), target, q.data()) != Status::ok) continue;
+    if (cold_start(arm, default_solution_options(arm), target, q.data()) != Status::ok) {
+      if (std::getenv("MDHCAL_SHOW_LOST") != nullptr) {
+        std::printf("  lost: arm %ld of 4, %.1f mm, sigma %.2e, q", n % 4, errors, smallest_singular_value(arm, from.data()));
+        for (const double joint : from) std::printf(" %.4f", joint);
+        std::printf("\n");
+      }
+      continue;
+    }
     ++solved;
     if (forward(arm, q.data(), reached) != Status::ok || position_distance(reached, target) > 1.01e-10 ||
         small_angle(reached, target) > 1.01e-10) {

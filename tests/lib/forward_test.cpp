@@ -5,6 +5,7 @@
 
 #include "mdhcal/kinematics.hpp"
 #include "tests/lib/arms.hpp"
+#include "tests/lib/factors.hpp"
 
 namespace {
 
@@ -23,34 +24,6 @@ TEST(Forward, ReproducesThePublishedReferencePosition) {
   EXPECT_NEAR(pose.position_m[2], 533.779e-3, 6e-6);
 }
 
-// The truth: the product of Li 2022, Eq. 1 written factor by factor as 4 x 4 matrices in long double.
-struct Matrix {
-  long double m[4][4];
-};
-
-Matrix product(const Matrix& a, const Matrix& b) {
-  Matrix c{};
-  for (int i = 0; i < 4; ++i) {
-    for (int j = 0; j < 4; ++j) {
-      for (int k = 0; k < 4; ++k) c.m[i][j] += a.m[i][k] * b.m[k][j];
-    }
-  }
-  return c;
-}
-
-Matrix shift(long double x, long double z) { return {{{1, 0, 0, x}, {0, 1, 0, 0}, {0, 0, 1, z}, {0, 0, 0, 1}}}; }
-
-// About x (0), y (1) or z (2).
-Matrix turn(int axis, long double angle) {
-  Matrix t = shift(0, 0);
-  const int a = (axis + 1) % 3;
-  const int b = (axis + 2) % 3;
-  t.m[a][a] = t.m[b][b] = std::cos(angle);
-  t.m[b][a] = std::sin(angle);
-  t.m[a][b] = -t.m[b][a];
-  return t;
-}
-
 template <class Real>
 void compare_with_products(double position_bound, double orthogonality_bound) {
   Random random(61);
@@ -63,20 +36,7 @@ void compare_with_products(double position_bound, double orthogonality_bound) {
     ASSERT_EQ(make_arm(g, arm), Status::ok);
     Real q[max_joints] = {};
     for (Real& joint : q) joint = static_cast<Real>(random.symmetric(pi));
-    Matrix truth = shift(0, 0);
-    for (int i = 0; i < g.joint_count; ++i) {
-      long double coordinate = static_cast<long double>(g.joint[i].sign) * static_cast<long double>(q[i]);
-      for (int j = 0; j < g.joint_count; ++j) {
-        coordinate += static_cast<long double>(g.joint[i].coupling[j]) * static_cast<long double>(q[j]);
-      }
-      const bool slides = g.joint[i].kind == JointKind::prismatic;
-      const Link& l = g.link[i];
-      truth = product(truth, turn(0, static_cast<long double>(l.alpha_rad)));
-      truth = product(truth, shift(static_cast<long double>(l.a_m), 0));
-      truth = product(truth, turn(2, static_cast<long double>(l.theta_rad) + (slides ? 0 : coordinate)));
-      truth = product(truth, shift(0, static_cast<long double>(l.d_m) + (slides ? coordinate : 0)));
-      truth = product(truth, turn(1, static_cast<long double>(l.beta_rad)));
-    }
+    const Matrix truth = product_of_factors(g, q);
     Pose<Real> pose{};
     ASSERT_EQ(forward(arm, q, pose), Status::ok);
     Frame<Real> frames[max_joints + 2];

@@ -160,6 +160,75 @@ TEST(FindSolutions, TakesTheAllowedTurnNearestToThePosture) {
   EXPECT_TRUE(turned_back);
 }
 
+// Against the solutions without limits, turned by hand: each one that has an allowed turn is there, on the allowed turn
+// nearest to the posture in each joint, none besides; the distance is the largest joint difference, and they are sorted.
+TEST(FindSolutions, LimitsCountModuloFullTurns) {
+  Random random(26);
+  int within = 0;
+  int without = 0;
+  for (int n = 0; n < cases(300); ++n) {
+    Geometry g = with_errors(n % 2 == 0 ? ur5() : wrist_arm(), random, 1e-3, 0.1 * deg);
+    Sample s;
+    Arm<double> unlimited{};
+    ASSERT_EQ(make_arm(g, unlimited), Status::ok);
+    for (int i = 0; i < 6; ++i) {
+      g.joint[i].has_min = random.symmetric(1) < 0.5 ? 1 : 0;
+      g.joint[i].has_max = random.symmetric(1) < 0.5 ? 1 : 0;
+      const double middle = random.symmetric(6.0);
+      const double half = random.uniform(1.0, 7.0);
+      g.joint[i].min = g.joint[i].has_min == 1 ? middle - half : 0.0;
+      g.joint[i].max = g.joint[i].has_max == 1 ? middle + half : 0.0;
+    }
+    ASSERT_EQ(make_arm(g, s.arm), Status::ok);
+    for (int i = 0; i < 6; ++i) {
+      s.q[i] = random.symmetric(pi);
+      s.posture[i] = random.symmetric(8.0);
+    }
+    ASSERT_EQ(forward(s.arm, s.q, s.target), Status::ok);
+    const SolutionOptions<double> options = default_solution_options(s.arm);
+    Solutions<double> all{};
+    Solutions<double> found{};
+    ASSERT_EQ(find_solutions(unlimited, options, s.target, s.posture, all), Status::ok);
+    const Status status = find_solutions(s.arm, options, s.target, s.posture, found);
+    expect_sound(s, options, found);
+    int expected = 0;
+    for (int k = 0; k < all.count; ++k) {
+      double turned[6];
+      bool allowed = true;
+      for (int i = 0; i < 6; ++i) {
+        double nearest = std::numeric_limits<double>::infinity();
+        for (int turns = -6; turns <= 6; ++turns) {
+          const double q = std::remainder(all.q[k][i], 2 * pi) + 2 * pi * turns;
+          if (g.joint[i].has_min == 1 && q < g.joint[i].min) continue;
+          if (g.joint[i].has_max == 1 && q > g.joint[i].max) continue;
+          if (std::fabs(q - s.posture[i]) < std::fabs(nearest - s.posture[i])) nearest = q;
+        }
+        allowed = allowed && std::isfinite(nearest);
+        turned[i] = nearest;
+      }
+      ++(allowed ? within : without);
+      if (!allowed) continue;
+      ++expected;
+      bool there = false;
+      for (int m = 0; m < found.count; ++m) {
+        double largest = 0;
+        for (int i = 0; i < 6; ++i) largest = std::max(largest, std::fabs(found.q[m][i] - turned[i]));
+        there = there || largest < 1e-6;
+      }
+      EXPECT_TRUE(there) << n << ", solution " << k;
+    }
+    EXPECT_EQ(found.count, expected) << n;
+    EXPECT_EQ(status, expected > 0 ? Status::ok : Status::out_of_reach) << n;
+    for (int m = 0; m < found.count; ++m) {
+      double largest = 0;
+      for (int i = 0; i < 6; ++i) largest = std::max(largest, std::fabs(found.q[m][i] - s.posture[i]));
+      EXPECT_NEAR(found.distance[m], largest, 1e-12);
+    }
+  }
+  EXPECT_GT(within, cases(300));
+  EXPECT_GT(without, cases(300) / 3);
+}
+
 TEST(FindSolutions, SignsAndCouplingsAreReadings) {
   Geometry g = wrist_arm();
   g.joint[2].sign = -1;

@@ -9,6 +9,8 @@
 #include "mdhcal/arm.hpp"
 #include "mdhcal/self_test.hpp"
 #include "offline/error.hpp"
+#include "mdhcal/solutions.hpp"
+#include "tests/lib/arms.hpp"
 #include "tests/output/sample_robot.hpp"
 
 namespace mdhcal::offline {
@@ -139,9 +141,51 @@ TEST(BlobWriter, KnowsTheFamilies) {
                                      Link{0, 1.0, 0, 0, 0},           Link{-quarter, 0.2, 0, 1.2, 0},
                                      Link{quarter, 0, 0, 0, 0},       Link{-quarter, 0, 0, 0.2, 0}};
   EXPECT_EQ(family(wrist, 6), PostureFamily::spherical_wrist);
-  wrist[4].a_m = 0.05;
+  wrist[4].a_m = 0.4;
   EXPECT_EQ(family(wrist, 6), PostureFamily::general);
   EXPECT_EQ(family(ur, 5), PostureFamily::general);
+}
+
+// Each border of family()'s tolerances from both sides: 5 degrees, 0.05 of the reach. What the blob declares for a
+// nominal geometry is what find_solutions() uses on the corrected one.
+TEST(BlobWriter, DeclaresTheFamilyThatTheSolverUses) {
+  test::Random random(17);
+  const auto expect_family = [&](const Geometry& nominal, PostureFamily declared, Family used) {
+    Robot robot;
+    robot.geometry = test::with_errors(nominal, random, 1e-4, 1e-4);
+    std::copy(nominal.link, nominal.link + max_joints, robot.nominal.begin());
+    EXPECT_EQ(decoded(make_blob(robot, Provenance{})).family, declared);
+    Arm<double> arm{};
+    ASSERT_EQ(make_arm(robot.geometry, arm), Status::ok);
+    double q[max_joints] = {0.3, -1.2, 1.5, 0.4, 1.1, -0.6};
+    Pose<double> target{};
+    ASSERT_EQ(forward(arm, q, target), Status::ok);
+    Solutions<double> found{};
+    ASSERT_EQ(find_solutions(arm, default_solution_options(arm), target, q, found), Status::ok);
+    EXPECT_EQ(found.family, used);
+  };
+  for (const double side : {0.8, 1.2}) {
+    const bool inside = side < 1.0;
+    const auto parallel = inside ? PostureFamily::parallel_axes : PostureFamily::general;
+    const auto wrist = inside ? PostureFamily::spherical_wrist : PostureFamily::general;
+    const Family use_parallel = inside ? Family::parallel : Family::general;
+    const Family use_wrist = inside ? Family::spherical_wrist : Family::general;
+    Geometry g = test::ur5();
+    g.link[2].alpha_rad += side * 5 * test::deg;
+    expect_family(g, parallel, use_parallel);
+    g = test::ur5();
+    g.link[3].alpha_rad += side * 5 * test::deg;
+    expect_family(g, parallel, use_parallel);
+    g = test::ur5();
+    g.link[5].a_m = side * 2 * 0.06;  // axes 5 and 6 pass each other half as far from where they nearly meet
+    expect_family(g, parallel, use_parallel);
+    g = test::wrist_arm();
+    g.link[2].alpha_rad += side * 5 * test::deg;
+    expect_family(g, wrist, use_wrist);
+    g = test::wrist_arm();
+    g.link[4].a_m = side * 0.107;
+    expect_family(g, wrist, use_wrist);
+  }
 }
 
 TEST(BlobDate, FollowsItsSources) {

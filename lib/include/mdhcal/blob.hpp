@@ -24,7 +24,8 @@ double max_deviation_rad() noexcept;
 /// The most self-test vectors of one precision.
 inline constexpr std::size_t max_vectors = blob_layout::vector_slots;
 
-/// Which closed form holds for the nominal geometry: what posture (shoulder, elbow, wrist) means on this arm.
+/// Which closed form holds for the nominal geometry, to the tolerances of family() (mdhcal/solutions.hpp): what posture
+/// (shoulder, elbow, wrist) means on this arm.
 enum class PostureFamily : std::int32_t {
   general = 0,          ///< none: solutions come from restarts
   spherical_wrist = 1,  ///< axes 4, 5 and 6 meet in a point

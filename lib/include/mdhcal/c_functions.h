@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * Included by mdhcal.h only, once a precision; hence no guard. Every function returns an int32_t status; with
- * MDHCAL_BAD_INPUT (a null pointer, storage that was not initialised, a value out of range) outputs are untouched.
+ * MDHCAL_BAD_INPUT (a null pointer, storage that was not initialised or is not aligned as a double, a value out of range)
+ * outputs are untouched.
  */
 
 /* Storage of a model and of a loop's state; the double is there for alignment. */

@@ -57,7 +57,7 @@ Status find_solutions(const Arm<float>& arm, const SolutionOptions<float>& optio
 
 /// Cold start: a solution of the pose for the readings q[joint_count], in place: the nearest of those that the readings
 /// themselves and the closed form's values, on both sides of nearly double roots, lead to. Only if there is none are
-/// the further values tried, then restarts (options.restarts, or 100 if that is 0) until one leads to a solution. Returns as
+/// the further values tried, then restarts (options.restarts, or max_restarts if that is 0) until one leads to a solution. Returns as
 /// find_solutions(); q is untouched unless ok.
 Status cold_start(const Arm<double>& arm, const SolutionOptions<double>& options, const Pose<double>& base_T_flange,
                   double* q) noexcept;
