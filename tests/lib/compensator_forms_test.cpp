@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "mdhcal/compensator.hpp"
-#include "tests/lib/arms.hpp"
+#include "tests/lib/every_solution.hpp"
 #include "tests/lib/factors.hpp"
 
 namespace {
@@ -54,9 +54,15 @@ class Forms : public ::testing::Test {
   static constexpr bool is_double = sizeof(Real) == sizeof(double);
   static constexpr double tolerance = is_double ? 1.1e-10 : 7e-6;
 
-  // Regular joints: every other one bent the other way.
+  // Regular joints: every other one bent the other way, away from singularities of the whole pose if there are six.
   void draw(const Geometry& g, Random& random, Real* q) {
-    for (int i = 0; i < g.joint_count; ++i) q[i] = static_cast<Real>((i % 2 == 0 ? 1 : -1) * random.uniform(0.4, 1.2));
+    Arm<double> arm{};
+    ASSERT_EQ(make_arm(g, arm), Status::ok);
+    double joints[max_joints] = {};
+    do {
+      for (int i = 0; i < g.joint_count; ++i) joints[i] = (i % 2 == 0 ? 1 : -1) * random.uniform(0.4, 1.2);
+    } while (g.joint_count == 6 && smallest_singular_value(arm, joints) < 0.03);
+    for (int i = 0; i < g.joint_count; ++i) q[i] = static_cast<Real>(joints[i]);
   }
 };
 using Reals = ::testing::Types<double, float>;
