@@ -2,6 +2,7 @@
 #include "offline/assess/bootstrap.hpp"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <thread>
 
@@ -69,7 +70,8 @@ std::vector<GroupRows> rows_by_group(const Calibration& c, double noise_mm) {
 
 }  // namespace
 
-Bootstrap bootstrap(const Calibration& c, std::size_t resamples, std::uint64_t seed, unsigned int threads) {
+Bootstrap bootstrap(const Calibration& c, std::size_t resamples, std::uint64_t seed, unsigned int threads,
+                    const std::function<void(std::size_t, std::size_t)>& progress) {
   const double noise_mm = c.noise_mm;
   const std::vector<GroupRows> groups = rows_by_group(c, noise_mm);
   const std::size_t n = c.layout.columns();
@@ -78,6 +80,7 @@ Bootstrap bootstrap(const Calibration& c, std::size_t resamples, std::uint64_t s
   const Eigen::VectorXd x0 = Eigen::Map<const Eigen::VectorXd>(now.data(), static_cast<Eigen::Index>(parameters));
   std::vector<std::vector<double>> drawn(parameters, std::vector<double>(resamples));
 
+  std::atomic<std::size_t> done = 0;
   // Every resample has a seed of its own, so it does not matter which thread takes it.
   const auto work = [&](std::size_t first, std::size_t stride) {
     std::vector<std::size_t> times(groups.size());
@@ -99,6 +102,7 @@ Bootstrap bootstrap(const Calibration& c, std::size_t resamples, std::uint64_t s
       for (std::size_t p = 0; p < parameters; ++p) {
         drawn[p][r] = x(static_cast<Eigen::Index>(p)) * c.layout.geometry[p].prior;
       }
+      if (progress) progress(++done, resamples);
     }
   };
   const std::size_t count = std::max<std::size_t>(1, threads > 0 ? threads : std::thread::hardware_concurrency());
@@ -111,15 +115,9 @@ Bootstrap bootstrap(const Calibration& c, std::size_t resamples, std::uint64_t s
   out.resamples = resamples;
   for (std::vector<double>& values : drawn) {
     std::sort(values.begin(), values.end());
-    const auto percentile = [&](double share) {
-      const double rank = share * static_cast<double>(values.size() - 1);
-      const auto below = static_cast<std::size_t>(rank);
-      const std::size_t above = std::min(below + 1, values.size() - 1);
-      return values[below] + (rank - static_cast<double>(below)) * (values[above] - values[below]);
-    };
     out.standard_deviation.push_back(statistics(values).sd);
-    out.low.push_back(values.empty() ? 0.0 : percentile(0.025));
-    out.high.push_back(values.empty() ? 0.0 : percentile(0.975));
+    out.low.push_back(values.empty() ? 0.0 : percentile(values, 0.025));
+    out.high.push_back(values.empty() ? 0.0 : percentile(values, 0.975));
   }
   return out;
 }

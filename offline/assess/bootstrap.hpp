@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 #include "offline/identify/calibrate.hpp"
@@ -18,8 +19,9 @@ struct Bootstrap {
 
 /// Each resample is solved with the calibration's lambda and robust weights on the problem linearised at its result,
 /// which for deviations of this size is exact to far below their scatter. Uses `threads` threads (0: as many as the
-/// machine has); the result does not depend on how many.
-Bootstrap bootstrap(const Calibration& calibration, std::size_t resamples, std::uint64_t seed,
-                    unsigned int threads = 0);
+/// machine has); the result does not depend on how many. `progress`, if given, is called from any of them with the
+/// resamples done and their number.
+Bootstrap bootstrap(const Calibration& calibration, std::size_t resamples, std::uint64_t seed, unsigned int threads = 0,
+                    const std::function<void(std::size_t, std::size_t)>& progress = {});
 
 }  // namespace mdhcal::offline

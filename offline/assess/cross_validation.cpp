@@ -10,7 +10,7 @@
 namespace mdhcal::offline {
 
 CrossValidation cross_validate(const Robot& robot, const Dataset& data, const CalibrationOptions& options,
-                               std::size_t folds) {
+                               std::size_t folds, const std::function<void(std::size_t, std::size_t)>& progress) {
   std::vector<std::size_t> order(data.groups.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   Random random(options.seed);
@@ -32,6 +32,7 @@ CrossValidation cross_validate(const Robot& robot, const Dataset& data, const Ca
       before.push_back(norm(r.before_mm));
       after.push_back(norm(r.after_mm));
     }
+    if (progress) progress(fold + 1, out.folds);
   }
   out.before = statistics(before);
   out.after = statistics(after);

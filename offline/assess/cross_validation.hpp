@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 
 #include "offline/identify/calibrate.hpp"
 
@@ -15,8 +16,9 @@ struct CrossValidation {
 };
 
 /// Repeats the whole calibration, choice of lambda and handling of gross errors included, with one fold of whole groups
-/// left out at a time; `folds` 0 leaves one group out at a time. Throws what calibrate() throws.
+/// left out at a time; `folds` 0 leaves one group out at a time. Throws what calibrate() throws. `progress`, if given, is
+/// called with the folds done and their number.
 CrossValidation cross_validate(const Robot& robot, const Dataset& data, const CalibrationOptions& options,
-                               std::size_t folds);
+                               std::size_t folds, const std::function<void(std::size_t, std::size_t)>& progress = {});
 
 }  // namespace mdhcal::offline

@@ -6,16 +6,12 @@
 
 namespace mdhcal::offline {
 
-namespace {
-
 double percentile(const std::vector<double>& sorted, double share) {
   const double rank = share * static_cast<double>(sorted.size() - 1);
   const auto below = static_cast<std::size_t>(rank);
   const std::size_t above = std::min(below + 1, sorted.size() - 1);
   return sorted[below] + (rank - static_cast<double>(below)) * (sorted[above] - sorted[below]);
 }
-
-}  // namespace
 
 Statistics statistics(std::vector<double> errors) {
   Statistics out;

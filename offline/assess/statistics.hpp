@@ -17,6 +17,9 @@ struct Statistics {
   double p95 = 0;     ///< 95th percentile, linear interpolation between order statistics (rank 0.95 (count - 1))
 };
 
+/// Linear interpolation between the order statistics: rank share * (count - 1). `sorted` ascending, not empty.
+double percentile(const std::vector<double>& sorted, double share);
+
 /// All zero for an empty set. Values must be finite.
 Statistics statistics(std::vector<double> errors);
 

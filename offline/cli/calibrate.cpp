@@ -5,15 +5,52 @@
 
 #include "offline/cli/calibration_arguments.hpp"
 #include "offline/cli/messages.hpp"
+#include "offline/cli/progress.hpp"
 #include "offline/output/folder.hpp"
 #include "offline/output/result_files.hpp"
+#include "offline/output/text_table.hpp"
 #include "offline/report/write_result.hpp"
 
 namespace mdhcal::offline {
 
 namespace {
 
-void run(const CalibrationArguments& arguments, std::size_t resamples, const std::optional<std::size_t>& folds) {
+struct CalibrateArguments : CalibrationArguments {
+  std::size_t resamples = 0;
+  std::optional<std::size_t> folds;
+};
+
+Assessment assess(const CalibrateArguments& arguments, const CalibrationOptions& options, const Robot& robot,
+                  const Dataset& data, const Calibration& c) {
+  Assessment out;
+  const bool shown = verbosity() != Verbosity::quiet;
+  if (arguments.resamples > 0) {
+    Progress progress("bootstrap", shown);
+    out.bootstrap = bootstrap(c, arguments.resamples, options.seed, 0, progress.callback());
+  }
+  if (arguments.folds) {
+    Progress progress("cross-validation", shown);
+    out.cross_validation = cross_validate(robot, data, options, *arguments.folds, progress.callback());
+  }
+  return out;
+}
+
+void tell(const Calibration& c, const Assessment& assessment) {
+  inform(estimated_text(c));
+  for (const std::string& decision : c.decisions) detail(decision);
+  for (const std::string& note : c.notes) inform(note);
+  for (const std::string& each : c.details) detail(each);
+  detail(choice_text(c));
+  if (assessment.cross_validation) {
+    const CrossValidation& cv = *assessment.cross_validation;
+    inform("Cross-validation in " + std::to_string(cv.folds) + " folds of whole groups: mean error " +
+           fixed(cv.after.mean, 4) + " mm, maximum " + fixed(cv.after.max, 4) + " mm (nominal " +
+           fixed(cv.before.mean, 4) + " and " + fixed(cv.before.max, 4) + " mm).");
+  }
+  inform(figures_text(c) + c.verdict);
+}
+
+void run(const CalibrateArguments& arguments) {
   const CalibrationOptions options = calibration_options(arguments);
   const std::string date = blob_date(arguments.date);
   const Robot robot = read_robot(arguments.robot);
@@ -22,32 +59,21 @@ void run(const CalibrationArguments& arguments, std::size_t resamples, const std
   if (!arguments.test.empty()) test = read_dataset(arguments.test, robot);
   OutputFolder folder(arguments.directory, result_names);
   const Calibration c = calibrate(robot, data, options, arguments.test.empty() ? nullptr : &test);
-
-  Assessment assessment;
-  if (resamples > 0) assessment.bootstrap = bootstrap(c, resamples, options.seed);
-  if (folds) {
-    assessment.cross_validation = cross_validate(robot, data, options, *folds);
-    const Statistics& s = assessment.cross_validation->after;
-    char text[128];
-    std::snprintf(text, sizeof text, "Cross-validation in %zu folds of whole groups: mean error %.4f mm, maximum %.4f mm.",
-                  assessment.cross_validation->folds, s.mean, s.max);
-    inform(text);
-  }
-  write_result(folder, c, date, true, {}, assessment);
+  const Assessment assessment = assess(arguments, options, robot, data, c);
+  write_result(folder, c, date, true, assessment);
   folder.commit();
 
+  if (arguments.json) std::fputs(result_json(c, assessment).c_str(), stdout);
   for (const std::string& note : data.notes) inform(note);
   for (const std::string& note : test.notes) inform(note);
-  for (const std::string& decision : c.decisions) inform(decision);
-  for (const std::string& note : c.notes) inform(note);
-  inform(figures_text(c) + c.verdict);
+  tell(c, assessment);
   inform("Written to " + arguments.directory + ".");
 }
 
 }  // namespace
 
 void add_calibrate(CLI::App& app) {
-  auto arguments = std::make_shared<CalibrationArguments>();
+  auto arguments = std::make_shared<CalibrateArguments>();
   CLI::App* command = app.add_subcommand("calibrate", "Identify a robot's geometry from measurements");
   add_calibration_arguments(*command, *arguments);
   CalibrationOptions& options = arguments->options;
@@ -59,15 +85,13 @@ void add_calibrate(CLI::App& app) {
                                           "quasi-optimality"}))
                    ->capture_default_str();
   command->add_option("--lambda", options.lambda, "Lambda itself, instead of a rule")->excludes(rule);
-  auto resamples = std::make_shared<std::size_t>(0);
-  auto folds = std::make_shared<std::optional<std::size_t>>();
-  command->add_option("--bootstrap", *resamples, "Resamples of whole groups for result.json, such as 1000");
-  command->add_option("--cross-validate", *folds,
+  command->add_option("--bootstrap", arguments->resamples, "Resamples of whole groups for result.json, such as 1000");
+  command->add_option("--cross-validate", arguments->folds,
                       "Repeat the calibration in this many folds of whole groups; 0: one group at a time");
   command->add_option("--date", arguments->date, "Date in the blob, YYYY-MM-DD");
   command->footer(
       "Example:\n  mdhcal calibrate robot.toml nine_poses.csv --test eighteen_poses.csv --base given --tool given -o result");
-  command->callback([arguments, resamples, folds] { run(*arguments, *resamples, *folds); });
+  command->callback([arguments] { run(*arguments); });
 }
 
 }  // namespace mdhcal::offline

@@ -19,6 +19,7 @@ struct CalibrationArguments {
   std::optional<std::string> date;
   double parallel_deg = 5.0, prior_length_mm = 1.0, prior_angle_mrad = 1.0;
   std::vector<std::string> fix, free;
+  bool json = false;
   CalibrationOptions options;
 };
 

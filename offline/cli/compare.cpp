@@ -9,9 +9,12 @@
 
 #include "offline/cli/calibration_arguments.hpp"
 #include "offline/cli/messages.hpp"
+#include "offline/cli/progress.hpp"
+#include "offline/cli/published.hpp"
 #include "offline/error.hpp"
 #include "offline/identify/rigid.hpp"
 #include "offline/output/folder.hpp"
+#include "offline/report/write_result.hpp"
 
 namespace mdhcal::offline {
 
@@ -36,24 +39,7 @@ Statistics figures_on(const Calibration& c, const std::vector<bool>& counts) {
   return statistics(errors);
 }
 
-// (Li 2022, Table 9); mean is the source's "MAE". It gives no other figure.
-struct Published {
-  const char* method;
-  double max, mean, sd;
-};
-constexpr Published published[] = {{"NC", 5.168, 2.533, 0.778},   {"LSM", 1.694, 1.445, 0.039},
-                                   {"GD", 2.024, 1.353, 0.234},   {"GN", 1.204, 0.956, 0.111},
-                                   {"RPIM", 0.583, 0.472, 0.026}};
-
-bool is_published_robot(const std::string& name) {
-  std::string plain;
-  for (char ch : name) {
-    if (ch != ' ') plain += static_cast<char>(ch >= 'A' && ch <= 'Z' ? ch - 'A' + 'a' : ch);
-  }
-  return plain.rfind("li2022", 0) == 0;
-}
-
-std::string table(const std::vector<Line>& lines, bool source, bool with_time) {
+std::string table(const std::vector<Line>& lines, const std::vector<PublishedFigures>& published, bool with_time) {
   char text[256];
   std::snprintf(text, sizeof text, "%-12s %9s %9s %9s %9s %9s %10s %7s%s\n", "method", "max", "mean", "sd", "rms",
                 "p95", "deviation", "steps", with_time ? "   time ms" : "");
@@ -67,17 +53,16 @@ std::string table(const std::vector<Line>& lines, bool source, bool with_time) {
     if (with_time) out += text;
     out += line.converged ? "\n" : "  not converged\n";
   }
-  if (source) {
-    out += "published by the source (Li 2022, Table 9), on its own poses:\n";
-    for (const Published& p : published) {
-      std::snprintf(text, sizeof text, "%-12s %9.3f %9.3f %9.3f\n", p.method, p.max, p.mean, p.sd);
-      out += text;
-    }
+  if (!published.empty()) out += "published by the source (Li 2022, Table 9), on its own poses:\n";
+  for (const PublishedFigures& p : published) {
+    std::snprintf(text, sizeof text, "%-12s %9.3f %9.3f %9.3f\n", p.method.c_str(), p.max_mm, p.mean_mm, p.sd_mm);
+    out += text;
   }
   return out;
 }
 
-std::string compare_json(const std::vector<Line>& lines, const char* split, std::size_t left_out) {
+std::string compare_json(const std::vector<Line>& lines, const std::vector<PublishedFigures>& published,
+                         const char* split, std::size_t left_out) {
   nlohmann::ordered_json json;
   json["split"] = split;
   json["outliers_left_out"] = left_out;
@@ -97,7 +82,67 @@ std::string compare_json(const std::vector<Line>& lines, const char* split, std:
                                {"converged", line.converged},
                                {"note", line.note}});
   }
+  json["published"] = nlohmann::ordered_json::array();
+  for (const PublishedFigures& p : published) {
+    json["published"].push_back(
+        {{"method", p.method}, {"max_mm", p.max_mm}, {"mean_mm", p.mean_mm}, {"sd_mm", p.sd_mm}});
+  }
   return json.dump(2) + "\n";
+}
+
+std::string report_of(const Calibration& regularized, const std::vector<Line>& lines,
+                      const std::vector<PublishedFigures>& published) {
+  ReportContext context;
+  for (const Line& line : lines) context.methods.push_back({line.method, line.figures, line.note});
+  for (const PublishedFigures& p : published) {
+    Statistics s;
+    s.max = p.max_mm, s.mean = p.mean_mm, s.sd = p.sd_mm;
+    s.rms = s.p95 = std::nan("");
+    context.methods.push_back({p.method + ", published", s, "on the source's own poses"});
+  }
+  return report_with_provenance(regularized, "", "", std::move(context));
+}
+
+struct Comparison {
+  std::vector<Line> lines;   // from no calibration to the source's own method
+  Calibration regularized;   // the method by which outliers are judged
+  std::size_t left_out = 0;  // outliers
+};
+
+Comparison compare_methods(const Robot& robot, const Dataset& data, const CalibrationOptions& options,
+                           const Dataset* test) {
+  Comparison out;
+  std::vector<bool> counts;
+  Progress progress("compare", verbosity() != Verbosity::quiet);
+  constexpr const char* methods[] = {"rpim", "rpim-train", "nc", "lsm", "gd", "gn", "lm", "ekf"};
+  for (const char* method : methods) {
+    CalibrationOptions one = options;
+    one.method = method;
+    const auto start = std::chrono::steady_clock::now();
+    Calibration c = calibrate(robot, data, one, test);
+    Line line;
+    line.time_ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+    if (counts.empty()) {
+      for (const RowResult& r : c.rows) {
+        const bool judged = r.test == c.test.has_value();
+        counts.push_back(judged && !r.outlier);
+        out.left_out += judged && r.outlier ? 1 : 0;
+      }
+    }
+    line.method = method;
+    line.figures = figures_on(c, counts);
+    for (const EstimatedParameter& p : c.parameters) {
+      line.deviation = std::max(line.deviation, 1e3 * std::fabs(p.deviation));
+    }
+    line.iterations = c.iterations;
+    line.converged = c.converged;
+    if (!c.converged && !c.notes.empty()) line.note = c.notes.front();
+    if (out.lines.empty()) out.regularized = std::move(c);
+    out.lines.push_back(line);
+    progress.update(out.lines.size(), std::size(methods));
+  }
+  std::rotate(out.lines.begin(), out.lines.begin() + 2, out.lines.end());
+  return out;
 }
 
 void run(const CalibrationArguments& arguments) {
@@ -106,46 +151,29 @@ void run(const CalibrationArguments& arguments) {
   const Dataset data = read_dataset(arguments.measurements, robot);
   Dataset test;
   if (!arguments.test.empty()) test = read_dataset(arguments.test, robot);
-  OutputFolder folder(arguments.directory, {"compare.json", "compare.txt"});
+  OutputFolder folder(arguments.directory, {"compare.json", "compare.txt", "report.html"});
+  const auto [lines, regularized, left_out] =
+      compare_methods(robot, data, options, arguments.test.empty() ? nullptr : &test);
 
-  std::vector<Line> lines;
-  std::vector<bool> counts;
-  std::size_t left_out = 0;
-  bool tested = false;
-  for (const char* method : {"rpim", "rpim-train", "nc", "lsm", "gd", "gn", "lm", "ekf"}) {
-    CalibrationOptions one = options;
-    one.method = method;
-    const auto start = std::chrono::steady_clock::now();
-    const Calibration c = calibrate(robot, data, one, arguments.test.empty() ? nullptr : &test);
-    Line line;
-    line.time_ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
-    if (counts.empty()) {
-      tested = c.test.has_value();
-      for (const RowResult& r : c.rows) {
-        counts.push_back(r.test == tested && !r.outlier);
-        left_out += r.test == tested && r.outlier ? 1 : 0;
-      }
-    }
-    line.method = method;
-    line.figures = figures_on(c, counts);
-    for (const EstimatedParameter& p : c.parameters) line.deviation = std::max(line.deviation, 1e3 * std::fabs(p.deviation));
-    line.iterations = c.iterations;
-    line.converged = c.converged;
-    if (!c.converged && !c.notes.empty()) line.note = c.notes.front();
-    lines.push_back(line);
-  }
-  // The order of the source: from no calibration to its own method.
-  std::rotate(lines.begin(), lines.begin() + 2, lines.end());
-  std::string text = "position error [mm] on " + std::to_string(lines.front().figures.count) +
-                     (tested ? " held-out rows" : " training rows (nothing was held out)") + ", " +
-                     std::to_string(left_out) + " outliers left out; deviation: the largest of a parameter [mm or mrad]\n";
-  const bool source = is_published_robot(robot.name);
-  std::fputs((text + table(lines, source, true)).c_str(), stdout);
-
-  folder.write("compare.json", compare_json(lines, tested ? "test" : "train", left_out));
+  const bool tested = regularized.test.has_value();
+  const std::string text =
+      "position error [mm] on " + std::to_string(lines.front().figures.count) +
+      (tested ? " held-out rows" : " training rows (nothing was held out)") + ", " + std::to_string(left_out) +
+      " outliers left out; deviation: the largest of a parameter [mm or mrad]\n";
+  const std::vector<PublishedFigures> published = published_figures(robot);
+  const std::string json = compare_json(lines, published, tested ? "test" : "train", left_out);
+  folder.write("compare.json", json);
   // The times change from run to run: they are on the screen only.
-  folder.write("compare.txt", text + table(lines, source, false));
+  folder.write("compare.txt", text + table(lines, published, false));
+  folder.write("report.html", report_of(regularized, lines, published));
   folder.commit();
+
+  std::fputs(arguments.json ? json.c_str() : (text + table(lines, published, true)).c_str(), stdout);
+  for (const std::string& note : data.notes) inform(note);
+  for (const std::string& note : test.notes) inform(note);
+  for (const std::string& decision : regularized.decisions) detail(decision);
+  for (const std::string& note : regularized.notes) detail(note);
+  for (const std::string& each : regularized.details) detail(each);
   for (const Line& line : lines) {
     if (!line.note.empty()) inform(line.method + ": " + line.note);
   }

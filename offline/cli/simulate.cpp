@@ -38,8 +38,7 @@ std::string truth_json(const Arguments& arguments, const Simulation& simulation)
   json["outliers"] = nlohmann::ordered_json::array();
   for (const std::size_t index : simulation.outlier_rows) {
     const Measurement& row = simulation.train.rows[index];
-    const std::string& target = simulation.train.targets[row.target];
-    json["outliers"].push_back(simulation.train.targets.size() > 1 ? row.id + '/' + target : row.id);
+    json["outliers"].push_back(row_name(simulation.train, row));
   }
   return json.dump(2) + '\n';
 }

@@ -3,11 +3,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <numeric>
 
 #include "offline/error.hpp"
 #include "offline/identify/covariance.hpp"
+#include "offline/identify/dependence.hpp"
 #include "offline/identify/figures.hpp"
 #include "offline/identify/methods.hpp"
 #include "offline/identify/regularized.hpp"
@@ -15,17 +15,12 @@
 #include "offline/identify/setup.hpp"
 #include "offline/identify/spectrum.hpp"
 #include "offline/identify/suspicion.hpp"
+#include "offline/identify/words.hpp"
 #include "offline/simulate/random.hpp"
 
 namespace mdhcal::offline {
 
 namespace {
-
-std::string number(double value, const char* format = "%.3g") {
-  char text[40];
-  std::snprintf(text, sizeof text, format, value);
-  return text;
-}
 
 LambdaRule rule_of(const CalibrationOptions& options) {
   if (options.method == "rpim-train") return LambdaRule::rpim_train;
@@ -114,11 +109,6 @@ std::vector<LambdaReport::Point> points_of(const std::vector<LambdaPoint>& curve
   return out;
 }
 
-std::string row_name(const Dataset& data, std::size_t row) {
-  const Measurement& m = data.rows[row];
-  return data.targets.size() > 1 ? m.id + "/" + data.targets[m.target] : m.id;
-}
-
 void note_commanded(const Robot& robot, const Dataset& data, const CalibrationOptions& options, double scale_mm,
                     Calibration& out) {
   if (data.commanded.empty()) return;
@@ -139,12 +129,14 @@ void note_commanded(const Robot& robot, const Dataset& data, const CalibrationOp
                       (better ? std::string("; use them by --joints ") + alternative + "." : std::string(".")));
 }
 
-void note_dependences(const Dataset& data, Calibration& out) {
-  if (!data.temperature.empty()) out.dependences.push_back(temperature_dependence(data, out.rows));
-  if (!data.direction.empty()) {
-    const std::vector<Dependence> more = direction_dependences(data, out.rows);
+void note_dependences(Calibration& out) {
+  if (!out.training.temperature.empty()) out.dependences.push_back(temperature_dependence(out));
+  if (!out.training.direction.empty()) {
+    const std::vector<Dependence> more = direction_dependences(out);
     out.dependences.insert(out.dependences.end(), more.begin(), more.end());
   }
+  const std::vector<std::string> sentences = sentences_on(out.dependences);
+  out.notes.insert(out.notes.end(), sentences.begin(), sentences.end());
 }
 
 }  // namespace
@@ -186,8 +178,8 @@ Calibration calibrate(const Robot& robot, const Dataset& given, const Calibratio
   const Fit nominal = fit_frames(setup, data, selection, noise_mm);
   out.start = nominal.estimate;
   const bool any_sigma = states_sigma(data);
-  check_simple_mistakes(robot, data, out.training_rows, setup_options,
-                        any_sigma ? nominal.scale * noise_mm : nominal.scale);
+  if (any_sigma) out.residual_unit_mm = mean_sigma_mm(data, out.training_rows, noise_mm);
+  check_simple_mistakes(robot, data, out.training_rows, setup_options, nominal.scale * out.residual_unit_mm);
 
   RegularizedFit regularized;
   const bool penalised = options.method == "rpim" || options.method == "rpim-train";
@@ -227,15 +219,16 @@ Calibration calibrate(const Robot& robot, const Dataset& given, const Calibratio
   }
   out.estimate = regularized.fit.estimate;
   out.robust_weight = selection.robust_weight;
-  out.scale_mm = regularized.fit.scale;
-  out.outlier_threshold_mm = outlier_error_norm(regularized.fit.scale);
+  const double scale = regularized.fit.scale;
+  out.scale_mm = scale * out.residual_unit_mm;
+  out.outlier_threshold_mm = outlier_error_norm(out.scale_mm);
 
   std::size_t rejected = 0;
-  for (double e : regularized.fit.error_norms) rejected += e > outlier_threshold * out.scale_mm ? 1 : 0;
+  for (double e : regularized.fit.error_norms) rejected += e > outlier_threshold * scale ? 1 : 0;
   if (penalised && options.robust) {
     if (const auto move = find_tracker_move(data, out.training_rows, setup, regularized.fit, noise_mm)) {
       throw Refusal("The tracker, or the robot's foot, seems to have moved before row " +
-                    row_name(data, move->first_row_after) + " (line " +
+                    row_name(data, data.rows[move->first_row_after]) + " (line " +
                     std::to_string(data.rows[move->first_row_after].line) + "): the rows from there on lie in a frame " +
                     number(move->shift_mm) + " mm and " + number(move->turn_deg) +
                     " degrees away. Calibrate from one series, or bring both into one tracker frame first.");
@@ -279,7 +272,7 @@ Calibration calibrate(const Robot& robot, const Dataset& given, const Calibratio
   }
 
   out.corrected = corrected_robot(robot, out.estimate, data);
-  const RowJudge judge{out.start, out.estimate, noise_mm, any_sigma, out.scale_mm};
+  const RowJudge judge{out.start, out.estimate, noise_mm, any_sigma, scale};
   out.train = judge_rows(judge, data, out.training_rows, false, out.rows);
   if (test != nullptr) {
     std::vector<std::size_t> all;
@@ -290,7 +283,7 @@ Calibration calibrate(const Robot& robot, const Dataset& given, const Calibratio
     out.testing = data;
     out.test = judge_rows(judge, data, testing, true, out.rows);
   }
-  note_dependences(data, out);
+  note_dependences(out);
   add_standing_notes(data, out);
   const std::vector<std::string> on_axis = targets_on_last_axis(out.estimate, data);
   out.notes.insert(out.notes.end(), on_axis.begin(), on_axis.end());

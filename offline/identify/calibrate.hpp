@@ -52,7 +52,8 @@ struct RowResult {
 };
 
 struct SplitFigures {
-  Statistics before, after, after_good;  ///< [mm]
+  Statistics before, after;            ///< all rows [mm]
+  Statistics before_good, after_good;  ///< the rows that are no outliers [mm]
   std::vector<std::string> outliers;     ///< id, or id/target with several targets
 };
 
@@ -68,12 +69,15 @@ struct LambdaReport {
   std::optional<double> corner;   ///< the L-curve's corner, if there is one
 };
 
-/// Mean residual over the rows of one class, and how the error norm goes with a quantity: reported, not modelled.
+/// How the residual goes with a recorded quantity (dependence.hpp): reported, not modelled.
 struct Dependence {
   std::string quantity;           ///< "temperature", or "direction" with its word
-  std::size_t count = 0;
-  Vector3 mean_residual_mm{};
-  double correlation = 0;         ///< of the error norm with the quantity (temperature only)
+  std::size_t count = 0;          ///< good training rows with the quantity, or with the word
+  Vector3 mean_residual_mm{};     ///< over those rows
+  double correlation = 0;         ///< multiple correlation of the residual with the quantity, 0 ... 1
+  double p_value = 1;             ///< probability that chance alone makes as much
+  std::vector<double> effects;    ///< temperature: x, y, z [mm a unit], growth [mm a metre and unit]; direction: [mrad]
+                                  ///< a revolute joint
 };
 
 struct Calibration {
@@ -89,11 +93,13 @@ struct Calibration {
   std::vector<EstimatedParameter> parameters;
   Identifiability identifiability;
   double noise_mm = 0.02;         ///< the noise that was assumed where no sigma is stated
-  double scale_mm = 0;            ///< of one axis's residual (in standard deviations with sigma)
+  double residual_unit_mm = 1;    ///< what a scaled residual of 1 stands for: with sigma the rows' mean sigma, else 1 mm
+  double scale_mm = 0;            ///< of one axis's residual
   double outlier_threshold_mm = 0;///< error norm of a position beyond which a row is an outlier
   std::vector<Dependence> dependences;
   std::vector<std::string> decisions;  ///< what was decided about the unknowns
   std::vector<std::string> notes;      ///< what the reader has to know
+  std::vector<std::string> details;    ///< each weak or lost combination of parameters, of which a note names the worst
   std::string verdict;                 ///< one sentence
 
   Layout layout;                  ///< the unknowns, in the order of `covariance`

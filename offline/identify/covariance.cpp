@@ -17,10 +17,10 @@ struct Noise {
   double freedom = 0;
 };
 
-// Chi medians, as in standard_error_norm(): back from the standardised norm to the sum of squares.
+// Back from standard_error_norm() to the sum of squares.
 double squared_norm(double error_norm, std::size_t count) {
-  const double median = count == 1 ? 0.674490 : count == 3 ? 1.538172 : 2.312596;
-  return error_norm * error_norm * median * median;
+  const double norm = error_norm * chi_median(count);
+  return norm * norm;
 }
 
 Noise noise_of(const Dataset& data, const Selection& selection, const Fit& fit, double parameters,

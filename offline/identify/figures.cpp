@@ -3,30 +3,53 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
-#include <map>
+#include <cstring>
 
 #include "offline/identify/reduction.hpp"
 #include "offline/identify/rigid.hpp"
 #include "offline/identify/robust.hpp"
+#include "offline/identify/words.hpp"
 
 namespace mdhcal::offline {
 
 namespace {
 
-std::string number(double value, const char* format = "%.3g") {
-  char text[40];
-  std::snprintf(text, sizeof text, format, value);
-  return text;
+bool states_another_nominal(const Robot& robot) {
+  for (std::int32_t i = 0; i < robot.geometry.joint_count; ++i) {
+    if (std::memcmp(&robot.geometry.link[i], &robot.nominal[static_cast<std::size_t>(i)], sizeof(Link)) != 0) return true;
+  }
+  return false;
 }
 
-std::string joined(const std::vector<std::string>& words) {
-  std::string out;
-  for (std::size_t i = 0; i < words.size(); ++i) {
-    out += i == 0 ? "" : i + 1 == words.size() ? " and " : ", ";
-    out += words[i];
+bool lost(const WeakDirection& w) { return !(w.relative_singular_value > 0.0); }
+
+// Without its end.
+std::string sentence_of(const WeakDirection& w) {
+  const bool alone = w.members.size() == 1;
+  if (lost(w)) return joined(w.members) + (alone ? " is not seen" : " are confounded");
+  return joined(w.members) + (alone ? " is seen only weakly" : " are nearly confounded") + " (" +
+         number(w.relative_singular_value) + " of the strongest direction)";
+}
+
+// How many combinations are lost or weak, the worst of each, and what would tell those.
+std::string note_of(const std::vector<WeakDirection>& weak) {
+  const auto first_weak = std::find_if_not(weak.begin(), weak.end(), lost);
+  const auto lost_count = static_cast<std::size_t>(first_weak - weak.begin());
+  const std::size_t weak_count = weak.size() - lost_count;
+  std::string out = "Combinations of parameters that these poses tell badly: " + std::to_string(lost_count) + " lost, " +
+                    std::to_string(weak_count) + " weak (below 0.01 of the strongest).";
+  if (lost_count > 0) out += " Lost first: " + sentence_of(weak.front()) + ". " + weak.front().advice;
+  if (weak_count > 0) {
+    WeakDirection worst = *first_weak;
+    constexpr std::size_t most = 4;
+    const std::size_t more = worst.members.size() > most ? worst.members.size() - most : 0;
+    if (more > 0) {
+      worst.members.resize(most - 1);
+      worst.members.push_back(std::to_string(more + 1) + " others");
+    }
+    out += " Weakest: " + sentence_of(worst) + ". " + worst.advice;
   }
-  return out;
+  return out + (weak.size() > 1 ? " All of them: --verbose, or weak_directions in result.json." : "");
 }
 
 Vector3 leading(const double* residual, std::size_t count) {
@@ -37,8 +60,7 @@ Vector3 leading(const double* residual, std::size_t count) {
 }  // namespace
 
 double outlier_error_norm(double scale) {
-  const double unit[3] = {1.0, 0.0, 0.0};
-  return outlier_threshold * scale / standard_error_norm(unit, 3);
+  return outlier_threshold * scale * chi_median(3);
 }
 
 SplitFigures judge_rows(const RowJudge& judge, const Dataset& data, const std::vector<std::size_t>& rows, bool test,
@@ -48,6 +70,7 @@ SplitFigures judge_rows(const RowJudge& judge, const Dataset& data, const std::v
   const Model after(judge.after);
   std::vector<double> errors_before;
   std::vector<double> errors_after;
+  std::vector<double> good_before;
   std::vector<double> good;
   for (std::size_t row : rows) {
     double residual[max_row_residuals];
@@ -65,54 +88,17 @@ SplitFigures judge_rows(const RowJudge& judge, const Dataset& data, const std::v
     errors_before.push_back(norm(result.before_mm));
     errors_after.push_back(norm(result.after_mm));
     if (result.outlier) {
-      const Measurement& m = data.rows[row];
-      out.outliers.push_back(data.targets.size() > 1 ? m.id + "/" + data.targets[m.target] : m.id);
+      out.outliers.push_back(row_name(data, data.rows[row]));
     } else {
+      good_before.push_back(errors_before.back());
       good.push_back(errors_after.back());
     }
     results.push_back(result);
   }
   out.before = statistics(errors_before);
   out.after = statistics(errors_after);
+  out.before_good = statistics(good_before);
   out.after_good = statistics(good);
-  return out;
-}
-
-Dependence temperature_dependence(const Dataset& data, const std::vector<RowResult>& results) {
-  Dependence out;
-  out.quantity = "temperature";
-  double sum_t = 0, sum_e = 0, sum_tt = 0, sum_ee = 0, sum_te = 0;
-  for (const RowResult& r : results) {
-    if (r.test || r.outlier || r.row >= data.temperature.size()) continue;
-    const double t = data.temperature[r.row];
-    if (!std::isfinite(t)) continue;
-    const double e = norm(r.after_mm);
-    ++out.count;
-    for (std::size_t k = 0; k < 3; ++k) out.mean_residual_mm[k] += r.after_mm[k];
-    sum_t += t, sum_e += e, sum_tt += t * t, sum_ee += e * e, sum_te += t * e;
-  }
-  if (out.count == 0) return out;
-  const auto n = static_cast<double>(out.count);
-  for (double& c : out.mean_residual_mm) c /= n;
-  const double spread = (sum_tt - sum_t * sum_t / n) * (sum_ee - sum_e * sum_e / n);
-  if (spread > 0.0) out.correlation = (sum_te - sum_t * sum_e / n) / std::sqrt(spread);
-  return out;
-}
-
-std::vector<Dependence> direction_dependences(const Dataset& data, const std::vector<RowResult>& results) {
-  std::map<std::string, Dependence> classes;
-  for (const RowResult& r : results) {
-    if (r.test || r.outlier || r.row >= data.direction.size()) continue;
-    Dependence& one = classes[data.direction[r.row]];
-    ++one.count;
-    for (std::size_t k = 0; k < 3; ++k) one.mean_residual_mm[k] += r.after_mm[k];
-  }
-  std::vector<Dependence> out;
-  for (auto& [word, one] : classes) {
-    one.quantity = "direction " + word;
-    for (double& c : one.mean_residual_mm) c /= static_cast<double>(one.count);
-    out.push_back(one);
-  }
   return out;
 }
 
@@ -123,6 +109,10 @@ void add_standing_notes(const Dataset& data, Calibration& c) {
   if (scalars < unknowns) {
     c.notes.push_back("There are fewer scalar measurements (" + std::to_string(scalars) + ") than unknowns (" +
                       std::to_string(unknowns) + "): the penalty decides what the measurements leave open.");
+  }
+  if (states_another_nominal(c.robot)) {
+    c.notes.push_back("The robot file states a geometry that was corrected before: deviations and their penalty count "
+                      "from its geometry, and \"nominal\" in the figures means it. The maker's nominal links are kept.");
   }
   if (c.identifiability.frame_rank < c.identifiability.frame_unknowns) {
     c.notes.push_back("Base frame and targets have " + std::to_string(c.identifiability.frame_unknowns) +
@@ -140,14 +130,8 @@ void add_standing_notes(const Dataset& data, Calibration& c) {
     c.notes.push_back(joined(lost) + (lost.size() == 1 ? " is" : " are") +
                       " not identifiable from these poses (alone or at all).");
   }
-  for (const WeakDirection& w : c.identifiability.weak) {
-    const bool gone = !(w.relative_singular_value > 0.0);
-    const std::string which =
-        w.members.size() == 1 ? w.members.front() + (gone ? " is not seen" : " is seen only weakly")
-                              : joined(w.members) + (gone ? " are confounded" : " are nearly confounded");
-    c.notes.push_back(which + (gone ? "" : " (" + number(w.relative_singular_value) + " of the strongest direction)") +
-                      ". " + w.advice);
-  }
+  for (const WeakDirection& w : c.identifiability.weak) c.details.push_back(sentence_of(w) + ". " + w.advice);
+  if (!c.identifiability.weak.empty()) c.notes.push_back(note_of(c.identifiability.weak));
   if (!far.empty()) {
     c.notes.push_back(joined(far) + (far.size() == 1 ? " deviates" : " deviate") +
                       " by more than 15 prior standard deviations from nominal: either the prior is too narrow for "
@@ -165,16 +149,19 @@ void add_standing_notes(const Dataset& data, Calibration& c) {
 std::string verdict_of(const Calibration& c) {
   if (!c.converged) return "Not converged: do not use this result.";
   if (!c.test) {
-    return "Untested: no rows were held out; on the training rows the mean error is " + number(c.train.after.mean) +
-           " mm (nominal " + number(c.train.before.mean) + " mm).";
+    return "Untested: no rows were held out; on the training rows the mean error is " + number(c.train.after_good.mean) +
+           " mm (nominal " + number(c.train.before_good.mean) + " mm)" +
+           (c.train.outliers.empty() ? "." : " without " + std::to_string(c.train.outliers.size()) + " outliers.");
   }
+  // Both without the outliers: a gross error is no fault of the nominal geometry either.
   const Statistics& after = c.test->after_good;
+  const Statistics& before = c.test->before_good;
   if (!(c.test->after.median < c.test->before.median)) {
     return "Worse than nominal on the held-out rows: do not use this result.";
   }
   return "Tested on " + std::to_string(c.test->after.count) + " held-out rows: mean error " + number(after.mean) +
          " mm, maximum " + number(after.max) + " mm without " + std::to_string(c.test->outliers.size()) +
-         " outliers; nominal " + number(c.test->before.mean) + " mm, maximum " + number(c.test->before.max) + " mm.";
+         " outliers; nominal " + number(before.mean) + " mm, maximum " + number(before.max) + " mm on the same rows.";
 }
 
 }  // namespace mdhcal::offline

@@ -21,9 +21,6 @@ double outlier_error_norm(double scale);
 SplitFigures judge_rows(const RowJudge& judge, const Dataset& data, const std::vector<std::size_t>& rows, bool test,
                         std::vector<RowResult>& results);
 
-Dependence temperature_dependence(const Dataset& data, const std::vector<RowResult>& results);
-std::vector<Dependence> direction_dependences(const Dataset& data, const std::vector<RowResult>& results);
-
 /// Notes on rank, on weak and lost parameters, on few measurements and on what is in no parameter.
 void add_standing_notes(const Dataset& data, Calibration& calibration);
 

@@ -180,6 +180,8 @@ std::size_t Model::residual(const Dataset& data, std::size_t row, const Layout& 
         add_position_jacobian(arm_, estimate_, other, other_target, layout, -1.0, ends.data(), layout.columns());
       }
       for (std::size_t c = 0; c < layout.columns(); ++c) {
+        // Both ends move with the base: exactly no change, and not the rounding of a difference.
+        if (!fixed_end && c < layout.base_columns()) continue;
         for (std::size_t k = 0; k < 3; ++k) jacobian[c] += span[k] / length * ends[k * layout.columns() + c];
       }
     }

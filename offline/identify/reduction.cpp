@@ -73,9 +73,17 @@ const Eigen::MatrixXd& Triangle::matrix() {
 
 bool states_sigma(const Dataset& data) {
   for (const Measurement& m : data.rows) {
-    if (m.sigma_m[0] > 0.0) return true;
+    if (m.sigma_m[0] > 0.0 || m.sigma_m[1] > 0.0 || m.sigma_m[2] > 0.0) return true;
   }
   return false;
+}
+
+double mean_sigma_mm(const Dataset& data, const std::vector<std::size_t>& rows, double noise_mm) {
+  double sum = 0.0;
+  for (const std::size_t row : rows) {
+    for (const double sigma_m : data.rows[row].sigma_m) sum += sigma_m > 0.0 ? 1e3 * sigma_m : noise_mm;
+  }
+  return rows.empty() ? noise_mm : sum / (3.0 * static_cast<double>(rows.size()));
 }
 
 void residual_scale(const Dataset& data, std::size_t row, double noise_mm, bool any_sigma, double* scale) {
@@ -89,12 +97,12 @@ void residual_scale(const Dataset& data, std::size_t row, double noise_mm, bool 
   for (std::size_t k = 3; k < max_row_residuals; ++k) scale[k] = any_sigma ? 1.0 / mean_sigma : 1.0;
 }
 
+double chi_median(std::size_t count) { return count == 1 ? 0.674490 : count == 3 ? 1.538172 : 2.312596; }
+
 double standard_error_norm(const double* scaled_residual, std::size_t count) {
-  // Medians of the chi distribution with 1, 3 and 6 degrees of freedom.
-  const double median = count == 1 ? 0.674490 : count == 3 ? 1.538172 : 2.312596;
   double sum = 0.0;
   for (std::size_t k = 0; k < count; ++k) sum += scaled_residual[k] * scaled_residual[k];
-  return std::sqrt(sum) / median;
+  return std::sqrt(sum) / chi_median(count);
 }
 
 std::vector<Triangle> linearise(const Model& model, const Dataset& data, const Selection& selection,

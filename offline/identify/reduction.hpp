@@ -49,6 +49,11 @@ struct Selection {
 /// dataset states one and 1 / noise_mm if others do. Multiplies residuals in mm.
 void residual_scale(const Dataset& data, std::size_t row, double noise_mm, bool any_sigma, double* scale);
 bool states_sigma(const Dataset& data);
+/// Mean over the rows and axes of the stated standard deviation, `noise_mm` where none is stated [mm].
+double mean_sigma_mm(const Dataset& data, const std::vector<std::size_t>& rows, double noise_mm);
+
+/// Median of the norm of `count` standard normal numbers (chi distribution); count is 1, 3 or 6.
+double chi_median(std::size_t count);
 
 /// Standardised error of one row from its scaled residuals: the norm, divided by the median that the norm of as many
 /// standard normal numbers has, so that rows of all kinds compare, and its median over good rows is one axis's sigma.

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "mdhcal/kinematics.hpp"
 #include "offline/identify/rigid.hpp"
@@ -224,6 +225,50 @@ void register_base(const std::vector<Sight>& sight, const Layout& layout, Estima
   estimate.tracker_T_base = rigid_fit(a, b, {});
 }
 
+// Where a draw wire's fixed ends lie in the base frame: |p_i - g|^2 = D_i^2 is linear in g and |g|^2. What is then known
+// of them in both frames is registered; with one or two ends the rest of the rotation stays open.
+bool fixed_end_start(const Dataset& data, const std::vector<std::size_t>& rows, const Arm<double>& arm,
+                     const Layout& layout, Estimate& estimate) {
+  if (!layout.base) return false;
+  struct End {
+    std::vector<Vector3> base_p_m;
+    std::vector<double> length_m;
+  };
+  std::map<Vector3, End> ends;
+  for (std::size_t row : rows) {
+    const Measurement& m = data.rows[row];
+    Pose<double> pose{};
+    if (m.kind != MeasurementKind::distance || m.other_row >= 0 || forward(arm, m.q.data(), pose) != Status::ok) continue;
+    End& end = ends[m.position_m];
+    if (end.length_m.size() >= enough_rows) continue;
+    end.base_p_m.push_back(transform(frame_of(pose), estimate.flange_p_m[m.target]));
+    end.length_m.push_back(m.distance_m);
+  }
+  std::vector<Vector3> in_base;
+  std::vector<Vector3> in_tracker;
+  for (const auto& [fixed_m, end] : ends) {
+    const auto n = static_cast<Eigen::Index>(end.length_m.size());
+    if (n < 4) continue;
+    Eigen::MatrixXd a(n, 4);
+    Eigen::VectorXd b(n);
+    for (Eigen::Index i = 0; i < n; ++i) {
+      const Vector3& p = end.base_p_m[static_cast<std::size_t>(i)];
+      const double length = end.length_m[static_cast<std::size_t>(i)];
+      for (Eigen::Index k = 0; k < 3; ++k) a(i, k) = -2.0 * p[static_cast<std::size_t>(k)];
+      a(i, 3) = 1.0;
+      b(i) = length * length - dot(p, p);
+    }
+    Eigen::Index rank = 0;
+    const Eigen::VectorXd g = least_squares(a, b, rank);
+    if (rank < 4) continue;
+    in_base.push_back({g(0), g(1), g(2)});
+    in_tracker.push_back(fixed_m);
+  }
+  if (in_base.empty()) return false;
+  estimate.tracker_T_base = rigid_fit(in_base, in_tracker, {});
+  return true;
+}
+
 }  // namespace
 
 Frame<double> rigid_fit(const std::vector<Vector3>& a, const std::vector<Vector3>& b,
@@ -271,6 +316,8 @@ std::vector<Estimate> starting_values(const Dataset& data, const std::vector<std
     refit_translations(sight, layout, candidate);
     out.push_back(candidate);
   }
+  candidate = nominal;
+  if (fixed_end_start(data, rows, arm, layout, candidate)) out.push_back(candidate);
   candidate = nominal;
   register_base(sight, layout, candidate);
   refit_translations(sight, layout, candidate);

@@ -16,8 +16,9 @@ Frame<double> rigid_fit(const std::vector<Vector3>& a, const std::vector<Vector3
 
 /// Starting values, best first is not promised: the caller refines each and keeps the one that fits best. Candidates
 /// are, as far as base and targets are to be fitted: the joint linear equations R^T m - R^T t = p_i + R_i flange_p with
-/// R projected on SO(3); target points from equal distances between pairs of poses (Li 2022, Eq. 21), then rigid_fit;
-/// rigid_fit with the nominal targets.
+/// R projected on SO(3); target points from equal distances between pairs of poses (Li 2022, Eq. 21), then rigid_fit; a
+/// draw wire's fixed ends, each located in the base frame by its lengths, then rigid_fit; rigid_fit with the nominal
+/// targets.
 std::vector<Estimate> starting_values(const Dataset& data, const std::vector<std::size_t>& rows,
                                       const Layout& layout, const Estimate& nominal);
 

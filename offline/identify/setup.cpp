@@ -32,7 +32,7 @@ Setup make_setup(const Robot& robot, const Dataset& data, const std::vector<std:
   setup.parameters = choose_parameters(robot, gauge, options.parameters);
 
   setup.nominal.geometry = robot.geometry;
-  if (!options.fit_base && robot.tracker_T_base) setup.nominal.tracker_T_base = frame_of(*robot.tracker_T_base);
+  if (robot.tracker_T_base) setup.nominal.tracker_T_base = frame_of(*robot.tracker_T_base);
   for (const std::string& word : data.targets) setup.nominal.flange_p_m.push_back(nominal_target(robot, word));
   if (setup.nominal.flange_p_m.empty()) setup.nominal.flange_p_m.push_back(robot.tool_p_m.value_or(Vector3{}));
 

@@ -19,14 +19,6 @@ constexpr double weak_share = 1e-2;
 // A parameter is identifiable if no more than this part of it lies in lost directions.
 constexpr double lost_share = 1e-6;
 
-Eigen::VectorXd scaling(const Eigen::MatrixXd& a) {
-  Eigen::VectorXd norms = a.colwise().norm().transpose();
-  for (double& n : norms) {
-    if (!(n > 0.0)) n = 1.0;
-  }
-  return norms;
-}
-
 std::vector<double> random_readings(const Geometry& geometry, Random& random) {
   std::vector<double> q(max_joints, 0.0);
   for (std::int32_t i = 0; i < geometry.joint_count; ++i) {
@@ -53,7 +45,8 @@ std::string readings_text(const Geometry& geometry, const std::vector<double>& q
 
 // Looks for a pose whose target would move when the parameters move along `direction` (with base and targets following
 // as the present poses make them): such a pose tells the direction.
-std::string advice(const Layout& layout, const Model& model, const Eigen::VectorXd& direction, std::uint64_t seed) {
+std::string advice(const Layout& layout, const Model& model, const Eigen::VectorXd& direction, bool alone,
+                   std::uint64_t seed) {
   constexpr int trials = 300;
   Random random(seed);
   Dataset trial;
@@ -73,10 +66,10 @@ std::string advice(const Layout& layout, const Model& model, const Eigen::Vector
     if (movement > best) best = movement, best_q = q;
   }
   if (!(best > 1e-6 * typical)) {
-    return "No pose of this arm with this target tells them apart: put the target further off the last axis, or fix "
-           "one of them.";
+    return std::string("No pose of this arm with this target tells ") + (alone ? "it" : "them apart") +
+           ": put the target further off the last axis, or fix " + (alone ? "it." : "one of them.");
   }
-  return "A pose such as " + readings_text(model.estimate().geometry, best_q) + " would tell them apart.";
+  return "A pose such as " + readings_text(model.estimate().geometry, best_q) + " would tell " + (alone ? "it." : "them apart.");
 }
 
 }  // namespace
@@ -85,9 +78,9 @@ Spectrum spectrum_of(const ReducedSystem& system) {
   Spectrum out;
   out.scalar_rows = system.row_count;
   if (system.geometry.cols() == 0) return out;
-  const Eigen::MatrixXd scaled = system.geometry * scaling(system.geometry).cwiseInverse().asDiagonal();
+  const Eigen::MatrixXd scaled = system.geometry * column_norms(system.geometry).cwiseInverse().asDiagonal();
   // Unit columns hide how strongly the poses see anything at all; the mean column length puts that back.
-  const Eigen::VectorXd norms = scaling(system.geometry);
+  const Eigen::VectorXd norms = column_norms(system.geometry);
   const double mean_norm = norms.mean();
   const Eigen::VectorXd s = Eigen::BDCSVD<Eigen::MatrixXd>(scaled).singularValues();
   double log_product = 0.0;
@@ -129,7 +122,7 @@ Identifiability identifiability(const ReducedSystem& system, const SpectralProbl
     out.resolution.push_back((share * problem.s.array().square() / (problem.s.array().square() + lambda)).sum());
   }
 
-  const Eigen::VectorXd norms = scaling(system.geometry);
+  const Eigen::VectorXd norms = column_norms(system.geometry);
   const Eigen::MatrixXd scaled = system.geometry * norms.cwiseInverse().asDiagonal();
   const Eigen::JacobiSVD<Eigen::MatrixXd> svd(scaled, Eigen::ComputeFullV);
   const Eigen::VectorXd& s = svd.singularValues();
@@ -153,7 +146,7 @@ Identifiability identifiability(const ReducedSystem& system, const SpectralProbl
     still.frame_residual.setZero();
     full.tail(n) = direction;
     full.head(full.size() - n) = frame_step(still, direction);
-    weak.advice = advice(layout, model, full, seed);
+    weak.advice = advice(layout, model, full, weak.members.size() == 1, seed);
     out.weak.push_back(std::move(weak));
   }
   return out;

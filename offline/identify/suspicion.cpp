@@ -3,25 +3,19 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <functional>
 
 #include "mdhcal/kinematics.hpp"
 #include "offline/error.hpp"
 #include "offline/identify/registration.hpp"
 #include "offline/identify/rigid.hpp"
+#include "offline/identify/words.hpp"
 
 namespace mdhcal::offline {
 
 namespace {
 
 constexpr double degrees = 57.29577951308232;
-
-std::string number(double value, const char* format = "%.3g") {
-  char text[40];
-  std::snprintf(text, sizeof text, format, value);
-  return text;
-}
 
 // A few hundred rows suffice to tell a gross mistake.
 std::vector<std::size_t> thinned(const std::vector<std::size_t>& rows, std::size_t most) {
@@ -82,7 +76,7 @@ std::vector<Mistake> simple_mistakes(const Robot& robot) {
   if (n >= 3 && std::fabs(robot.geometry.joint[2].coupling[1]) <= 0.0) {
     for (double ratio : {1.0, -1.0}) {
       out.push_back({"joint 3 also turns with joint 2: add [[coupling]] of = 3, by = 2, ratio = " +
-                         number(ratio, "%.0f") + " to the robot file",
+                         number(ratio, 0) + " to the robot file",
                      [ratio](Robot& r, Dataset&) { r.geometry.joint[2].coupling[1] = ratio; }});
     }
   }
@@ -199,7 +193,7 @@ void check_poses(const Robot& robot, const Dataset& data, const std::vector<std:
     turned = std::max(turned, norm(log_of_rotation(compose(reference, frame))));
   }
   if (turned * degrees < 0.5) {
-    throw Refusal("The flange has one orientation throughout (it turns by " + number(turned * degrees, "%.2f") +
+    throw Refusal("The flange has one orientation throughout (it turns by " + number(turned * degrees, 2) +
                   " degrees at most), so the target point cannot be told from the base frame. Measure with different "
                   "orientations, or state the target in the robot file and use --tool given.");
   }
@@ -214,7 +208,9 @@ void check_simple_mistakes(const Robot& robot, const Dataset& data, const std::v
   for (std::size_t row : thinned(rows, 200)) {
     if (data.rows[row].kind == MeasurementKind::distance) return;
     few.rows.push_back(data.rows[row]);
+    few.rows.back().sigma_m = {};  // scales in mm are compared
   }
+  const double as_it_is = nominal_scale(robot, few, options);
   double best = HUGE_VAL;
   std::string what;
   for (const Mistake& mistake : simple_mistakes(robot)) {
@@ -235,21 +231,22 @@ void check_simple_mistakes(const Robot& robot, const Dataset& data, const std::v
       continue;  // the changed readings are out of range: not that mistake
     }
   }
-  if (best < 0.2 * nominal_scale_mm) {
-    throw Refusal("The nominal robot misses the measurements by " + number(nominal_scale_mm) +
+  if (best < 0.2 * as_it_is) {
+    throw Refusal("The nominal robot misses the measurements by " + number(as_it_is) +
                   " mm an axis (median), but only by " + number(best) + " mm if " + what + ".");
   }
 }
 
 std::optional<TrackerMove> find_tracker_move(const Dataset& data, const std::vector<std::size_t>& rows,
                                              const Setup& setup, const Fit& fit_one, double noise_mm) {
-  if (states_sigma(data) || fit_one.scale < 2.0 * noise_mm) return std::nullopt;
+  // Residuals that the stated noise explains need no other explanation.
+  if (fit_one.scale < 2.0 * (states_sigma(data) ? 1.0 : noise_mm)) return std::nullopt;
   std::vector<std::size_t> usable;
   for (std::size_t row : rows) {
     if (data.rows[row].kind != MeasurementKind::distance) usable.push_back(row);
   }
   usable = thinned(usable, 400);
-  if (usable.size() < 20 || !setup.layout.base) return std::nullopt;
+  if (usable.size() < 20) return std::nullopt;
 
   // Two frames are fitted by turns: register the second part, move it to the first part's frame, calibrate again.
   Dataset joined = data;
@@ -302,7 +299,7 @@ std::vector<std::string> targets_on_last_axis(const Estimate& estimate, const Da
     const double radius_mm = 1e3 * std::hypot(p[0], p[1]);
     if (radius_mm >= 1.0) continue;
     const std::string word = t < data.targets.size() && !data.targets[t].empty() ? " " + data.targets[t] : "";
-    out.push_back("Target" + word + " lies " + number(radius_mm, "%.3f") + " mm from the axis of joint " +
+    out.push_back("Target" + word + " lies " + number(radius_mm, 3) + " mm from the axis of joint " +
                   std::to_string(n) +
                   ": turning that joint hardly moves it, and theta" + std::to_string(n) + " and alpha" +
                   std::to_string(n) + " are told badly or not at all. Put the reflector off the axis.");

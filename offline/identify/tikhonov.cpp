@@ -11,14 +11,6 @@ namespace mdhcal::offline {
 
 namespace {
 
-Eigen::VectorXd column_norms(const Eigen::MatrixXd& a) {
-  Eigen::VectorXd norms = a.colwise().norm().transpose();
-  for (double& n : norms) {
-    if (!(n > 0.0)) n = 1.0;
-  }
-  return norms;
-}
-
 Eigen::Index rank_of(const Eigen::VectorXd& singular_values, double tolerance) {
   if (singular_values.size() == 0) return 0;
   const double limit = tolerance * singular_values(0);
@@ -28,6 +20,16 @@ Eigen::Index rank_of(const Eigen::VectorXd& singular_values, double tolerance) {
 }
 
 }  // namespace
+
+Eigen::VectorXd column_norms(const Eigen::MatrixXd& a, double largest) {
+  Eigen::VectorXd norms = a.colwise().norm().transpose();
+  if (norms.size() == 0) return norms;
+  largest = std::max(largest, norms.maxCoeff());
+  for (double& n : norms) {
+    if (!(n > jacobian_tolerance * largest)) n = largest > 0.0 ? largest : 1.0;
+  }
+  return norms;
+}
 
 Eigen::VectorXd SpectralProblem::solution(double lambda) const {
   return v * (s.array() / (s.array().square() + lambda) * beta.array()).matrix();
@@ -91,7 +93,8 @@ ReducedSystem reduce_frames(const Eigen::MatrixXd& matrix, std::size_t frame_col
   out.frame_rank = frames;
   if (frames == 0) return out;
 
-  const Eigen::VectorXd norms = column_norms(out.frame);
+  out.largest_column = matrix.topLeftCorner(n, n).colwise().norm().maxCoeff();
+  const Eigen::VectorXd norms = column_norms(out.frame, out.largest_column);
   const Eigen::MatrixXd scaled = out.frame * norms.cwiseInverse().asDiagonal();
   const Eigen::JacobiSVD<Eigen::MatrixXd> svd(scaled, Eigen::ComputeFullU);
   out.frame_rank = rank_of(svd.singularValues(), jacobian_tolerance);
@@ -120,7 +123,7 @@ SpectralProblem penalised_problem(const ReducedSystem& system, const Eigen::Vect
 Eigen::VectorXd frame_step(const ReducedSystem& system, const Eigen::VectorXd& geometry_step) {
   if (system.frame.cols() == 0) return Eigen::VectorXd(0);
   const Eigen::VectorXd target = -(system.frame_residual + system.frame_by_geometry * geometry_step);
-  const Eigen::VectorXd norms = column_norms(system.frame);
+  const Eigen::VectorXd norms = column_norms(system.frame, system.largest_column);
   const Eigen::MatrixXd scaled = system.frame * norms.cwiseInverse().asDiagonal();
   Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> solver;
   solver.setThreshold(jacobian_tolerance);

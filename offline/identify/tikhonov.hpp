@@ -34,6 +34,10 @@ SpectralProblem spectral_problem(const Eigen::MatrixXd& a, const Eigen::VectorXd
 /// direction below 1e-10 of the largest carries no information from any measurement.
 inline constexpr double jacobian_tolerance = 1e-10;
 
+/// Lengths of the columns, to scale them to unit length. A column that is rounding beside the longest (or beside
+/// `largest`, the longest of the whole system) is divided by that instead: scaled up, it would pass for information.
+Eigen::VectorXd column_norms(const Eigen::MatrixXd& a, double largest = 0.0);
+
 /// A triangle taken apart: frames (base, targets) first, then the geometry.
 struct ReducedSystem {
   Eigen::MatrixXd frame;             ///< frame rows, frame columns
@@ -43,6 +47,7 @@ struct ReducedSystem {
   Eigen::VectorXd geometry_residual;
   double outside2 = 0;               ///< squared residual that no unknown influences (to first order)
   Eigen::Index frame_rank = 0;
+  double largest_column = 0;         ///< length of the longest column, frames and geometry
   std::size_t row_count = 0;
 };
 

@@ -298,6 +298,10 @@ class Reader {
 
 }  // namespace
 
+std::string row_name(const Dataset& data, const Measurement& row) {
+  return data.targets.size() > 1 ? row.id + '/' + data.targets[row.target] : row.id;
+}
+
 Dataset parse_dataset(const std::string& text, const std::string& path, const Robot& robot) {
   return Reader(text, path, robot).read();
 }

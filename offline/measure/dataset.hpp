@@ -48,6 +48,9 @@ struct Dataset {
   std::string digest_sha256;          ///< of the file's bytes, lower-case hexadecimal
 };
 
+/// How a row is named to the user: its id, or id/target where there are several targets.
+std::string row_name(const Dataset& data, const Measurement& row);
+
 /// Reads a measurement file (CSV, DESIGN.md). Throws InputError naming file, line, column, found and expected.
 Dataset read_dataset(const std::string& path, const Robot& robot);
 Dataset parse_dataset(const std::string& text, const std::string& path, const Robot& robot);

@@ -3,22 +3,9 @@
 
 #include <cstdio>
 
+#include "offline/measure/joint_file.hpp"
+
 namespace mdhcal::offline {
-
-namespace {
-
-// A field with a comma, a quote or a line end is quoted (RFC 4180).
-std::string field(const std::string& text) {
-  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
-  std::string out = "\"";
-  for (char c : text) {
-    if (c == '"') out += '"';
-    out += c;
-  }
-  return out + '"';
-}
-
-}  // namespace
 
 std::string residuals_csv(const Calibration& calibration) {
   std::string out =
@@ -26,7 +13,7 @@ std::string residuals_csv(const Calibration& calibration) {
   for (const RowResult& r : calibration.rows) {
     const Dataset& data = r.test ? calibration.testing : calibration.training;
     const Measurement& m = data.rows[r.row];
-    out += field(m.id) + ',' + (data.targets.empty() ? std::string() : field(data.targets[m.target]));
+    out += csv_field(m.id) + ',' + (data.targets.empty() ? std::string() : csv_field(data.targets[m.target]));
     out += r.test ? ",test," : ",train,";
     out += r.outlier ? "1" : "0";
     for (const Vector3* v : {&r.before_mm, &r.after_mm}) {

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cstdio>
 
+#include "offline/identify/words.hpp"
+
 namespace mdhcal::offline {
 
 namespace {
@@ -41,6 +43,31 @@ std::string corrected_toml(const Calibration& c) { return write_robot(c.correcte
 
 Blob calibration_blob(const Calibration& c, const std::string& date) {
   return make_blob(parse_robot(corrected_toml(c), "corrected.toml"), provenance_of(c, date));
+}
+
+std::string estimated_text(const Calibration& c) {
+  std::vector<std::string> betas;
+  for (const EstimatedParameter& p : c.parameters) {
+    if (p.id.key == ParameterKey::beta) betas.push_back(name(p.id));
+  }
+  return std::to_string(c.parameters.size()) + " parameters are estimated" +
+         (betas.empty() ? std::string() : ", " + joined(betas) + " of parallel axes among them") + ".";
+}
+
+std::string choice_text(const Calibration& c) {
+  const Spectrum& before = c.identifiability.before;
+  const Spectrum& after = c.identifiability.after;
+  std::string out = "Method " + c.method + ", " + std::to_string(c.iterations) + " iterations";
+  if (c.lambda.rule != "none") out += "; lambda " + number(c.lambda.lambda) + " by the rule " + c.lambda.rule;
+  out += "; residual scale " + number(c.scale_mm) + " mm an axis, outliers beyond " + number(c.outlier_threshold_mm) +
+         " mm. Rank " + std::to_string(after.rank) + " of " + std::to_string(after.singular_values.size()) +
+         ", condition number " + number(before.condition) + " before, " + number(after.condition) + " after, " +
+         number(c.identifiability.condition_regularized) + " with the penalty.";
+  for (std::size_t k = 0; k < after.observability.size(); ++k) {
+    out += (k == 0 ? " Observability " : ", ") + std::string("O") + std::to_string(k + 1) + " " +
+           number(before.observability[k]) + " before, " + number(after.observability[k]) + " after";
+  }
+  return out + ".";
 }
 
 std::string figures_text(const Calibration& c) {

@@ -22,6 +22,10 @@ Provenance provenance_of(const Calibration& calibration, const std::string& date
 std::string corrected_toml(const Calibration& calibration);
 Blob calibration_blob(const Calibration& calibration, const std::string& date);
 
+/// One sentence: how many parameters are estimated, and which betas.
+std::string estimated_text(const Calibration& calibration);
+/// How lambda was chosen, and how well the poses tell the parameters, before and after.
+std::string choice_text(const Calibration& calibration);
 /// The figures before and after as plain text, for stderr.
 std::string figures_text(const Calibration& calibration);
 

@@ -25,6 +25,7 @@ Json figures(const Statistics& s) {
 Json split(const SplitFigures& f) {
   return {{"before", figures(f.before)},
           {"after", figures(f.after)},
+          {"before_good", figures(f.before_good)},
           {"after_good", figures(f.after_good)},
           {"outliers", f.outliers}};
 }
@@ -123,7 +124,7 @@ std::string result_json(const Calibration& c, const Assessment& assessment) {
   json["outliers"] = c.train.outliers;
   json["outlier_threshold_mm"] = finite(c.outlier_threshold_mm);
   json["residual_scale_mm"] = finite(c.scale_mm);
-  json["noise_sigma_mm"] = finite(c.covariance.sigma);
+  json["noise_sigma_mm"] = finite(c.covariance.sigma * c.residual_unit_mm);
   json["lambda"] = lambda(c.lambda);
   json["parameters"] = Json::array();
   for (const EstimatedParameter& p : c.parameters) json["parameters"].push_back(parameter(p));
@@ -161,10 +162,12 @@ std::string result_json(const Calibration& c, const Assessment& assessment) {
     json["dependences"].push_back({{"quantity", d.quantity},
                                    {"count", d.count},
                                    {"mean_residual_mm", vector_mm(d.mean_residual_mm)},
-                                   {"correlation", finite(d.correlation)}});
+                                   {"correlation", finite(d.correlation)},
+                                   {"p_value", finite(d.p_value)}});
   }
   json["decisions"] = c.decisions;
   json["notes"] = c.notes;
+  json["details"] = c.details;
   return json.dump(2) + "\n";
 }
 

@@ -82,8 +82,7 @@ const Measurement& measurement(const Calibration& calibration, const RowResult& 
 
 std::string row_name(const Calibration& calibration, const RowResult& row) {
   const Dataset& data = row.test ? calibration.testing : calibration.training;
-  const Measurement& m = data.rows[row.row];
-  return data.targets.size() > 1 ? m.id + '/' + data.targets[m.target] : m.id;
+  return row_name(data, data.rows[row.row]);
 }
 
 std::optional<LambdaPicture> lambda_picture(const Calibration& calibration) {

@@ -10,9 +10,13 @@
 
 namespace mdhcal::offline {
 
-/// Adds a calibration's files to a folder whose names are result_names; the report only if `with_report`. `context` may
-/// name methods that were compared; its provenance is filled in here, the blob's digest included.
+/// report_html() with the provenance filled in: files and their digests, what is empty left out. `context` may name
+/// methods that were compared.
+std::string report_with_provenance(const Calibration& calibration, const std::string& date,
+                                   const std::string& blob_sha256, ReportContext context);
+
+/// Adds a calibration's files to a folder whose names are result_names; the report only if `with_report`.
 void write_result(OutputFolder& folder, const Calibration& calibration, const std::string& date, bool with_report,
-                  ReportContext context = {}, const Assessment& assessment = {});
+                  const Assessment& assessment = {});
 
 }  // namespace mdhcal::offline

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <atomic>
+
 #include "offline/assess/cross_validation.hpp"
 #include "offline/simulate/family.hpp"
 #include "offline/simulate/simulate.hpp"
@@ -45,9 +47,28 @@ TEST(Bootstrap, AgreesWithTheCovariance) {
   }
 }
 
+TEST(Bootstrap, CountsWhatIsDone) {
+  const Simulation s = simulated(1);
+  const Calibration c = calibrate(s.nominal, s.train, {});
+  std::atomic<std::size_t> calls = 0;
+  std::atomic<std::size_t> most = 0;
+  (void)bootstrap(c, 40, 7, 3, [&](std::size_t done, std::size_t total) {
+    ++calls;
+    if (done > most) most = done;
+    EXPECT_EQ(total, 40U);
+  });
+  EXPECT_EQ(calls, 40U);
+  EXPECT_EQ(most, 40U);
+}
+
 TEST(CrossValidation, LeavesWholeGroupsOut) {
   const Simulation s = simulated(3);
-  const CrossValidation k = cross_validate(s.nominal, s.train, {}, 4);
+  std::vector<std::size_t> told;
+  const CrossValidation k = cross_validate(s.nominal, s.train, {}, 4, [&](std::size_t done, std::size_t total) {
+    EXPECT_EQ(total, 4U);
+    told.push_back(done);
+  });
+  EXPECT_EQ(told, (std::vector<std::size_t>{1, 2, 3, 4}));
   EXPECT_EQ(k.folds, 4U);
   EXPECT_EQ(k.after.count, s.train.rows.size());
   EXPECT_LT(k.after.mean, 0.06);

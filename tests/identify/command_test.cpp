@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <iomanip>
 #include <sstream>
 
 #include <nlohmann/json.hpp>
@@ -74,15 +75,92 @@ TEST(CalibrateCommand, AnAssessmentIsWrittenOnRequest) {
   EXPECT_EQ(json["bootstrap"]["resamples"], 50);
 }
 
+TEST(CalibrateCommand, JsonIsTheResultAndNothingElseOnStdout) {
+  TemporaryFolder folder;
+  std::vector<std::string> arguments = command("calibrate", example + "eighteen.csv", folder / "out");
+  arguments.emplace_back("--json");
+  const auto run = run_mdhcal(arguments);
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_EQ(run.out, read_bytes(folder / "out/result.json"));
+  EXPECT_NE(run.err.find("Tested on 18 held-out rows"), std::string::npos);
+}
+
+TEST(CalibrateCommand, QuietSaysNothingAndVerboseSaysWhy) {
+  TemporaryFolder folder;
+  const std::vector<std::string> plain = command("calibrate", example + "eighteen.csv", folder / "out");
+  std::vector<std::string> quiet = plain;
+  quiet.emplace_back("--quiet");
+  std::vector<std::string> verbose = plain;
+  verbose.emplace_back("--verbose");
+  const auto silent = run_mdhcal(quiet);
+  EXPECT_EQ(silent.exit_code, 0);
+  EXPECT_EQ(silent.out + silent.err, "");
+  const auto said = run_mdhcal(plain);
+  const auto why = run_mdhcal(verbose);
+  for (const char* detail : {"beta2 is estimated, d2 stays nominal", "theta5 and a6 are confounded",
+                             "by the rule reml", "condition number", "O5"}) {
+    EXPECT_EQ(said.err.find(detail), std::string::npos) << detail;
+    EXPECT_NE(why.err.find(detail), std::string::npos) << detail;
+  }
+  // A terminal page, counts and the worst: the rest is in result.json.
+  EXPECT_LE(std::count(said.err.begin(), said.err.end(), '\n'), 14);
+  EXPECT_NE(said.err.find("3 lost, 5 weak"), std::string::npos) << said.err;
+  const auto json = nlohmann::json::parse(read_bytes(folder / "out/result.json"));
+  EXPECT_EQ(json["identifiability"]["weak_directions"].size(), 8U);
+  EXPECT_EQ(json["details"].size(), 8U);
+}
+
+// The gross errors of the test file are left out of both sides of the verdict's comparison.
+TEST(CalibrateCommand, TheVerdictComparesLikeWithLike) {
+  TemporaryFolder folder;
+  const auto run = run_mdhcal(command("calibrate", example + "eighteen.csv", folder / "out"));
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  const auto json = nlohmann::json::parse(read_bytes(folder / "out/result.json"));
+  EXPECT_EQ(json["test"]["before_good"]["count"], 14);
+  EXPECT_EQ(json["test"]["after_good"]["count"], 14);
+  EXPECT_LT(json["test"]["before_good"]["max_mm"].get<double>(), 5.0);
+  EXPECT_GT(json["test"]["before"]["max_mm"].get<double>(), 30.0);
+  EXPECT_EQ(json["verdict"], "Tested on 18 held-out rows: mean error 0.0183 mm, maximum 0.0558 mm without 4 outliers; "
+                             "nominal 2.58 mm, maximum 3.69 mm on the same rows.");
+}
+
 TEST(CompareCommand, PrintsEveryMethodAndTheSource) {
   TemporaryFolder folder;
   const auto run = run_mdhcal(command("compare", example + "eighteen.csv", folder / "out"));
   ASSERT_EQ(run.exit_code, 0) << run.err;
-  for (const char* method : {"nc", "lsm", "gd", "gn", "lm", "ekf", "rpim", "RPIM", "published by the source"}) {
+  EXPECT_EQ(names_in(folder / "out"), (std::vector<std::string>{"compare.json", "compare.txt", "report.html"}));
+  for (const char* method : {"nc", "lsm", "gd", "gn", "lm", "ekf", "rpim", "published by the source"}) {
     EXPECT_NE(run.out.find(method), std::string::npos) << method;
   }
   const auto json = nlohmann::json::parse(read_bytes(folder / "out/compare.json"));
   EXPECT_EQ(json["methods"].size(), 8U);
+  // What is published is what stands in the example's file.
+  std::istringstream rows(read_bytes(example + "published.csv"));
+  std::size_t published = 0;
+  for (std::string row; std::getline(rows, row);) {
+    if (row.empty() || row[0] == '#' || row.rfind("method", 0) == 0) continue;
+    const auto& entry = json["published"].at(published++);
+    std::ostringstream again;
+    again << entry["method"].get<std::string>() << ',' << std::fixed << std::setprecision(3)
+          << entry["max_mm"].get<double>() << ',' << entry["mean_mm"].get<double>() << ','
+          << entry["sd_mm"].get<double>();
+    EXPECT_EQ(again.str(), row);
+  }
+  EXPECT_EQ(published, json["published"].size());
+  EXPECT_EQ(published, 5U);
+  const std::string report = read_bytes(folder / "out/report.html");
+  EXPECT_NE(report.find("Methods compared"), std::string::npos);
+  EXPECT_NE(report.find("rpim, published"), std::string::npos);
+}
+
+TEST(CompareCommand, OfAnotherRobotHasNoPublishedRow) {
+  TemporaryFolder folder;
+  ASSERT_EQ(run_mdhcal({"simulate", "five-joint", "-o", folder / "s"}).exit_code, 0);
+  const auto run = run_mdhcal({"compare", folder / "s/robot.toml", folder / "s/measurements.csv", "--test",
+                               folder / "s/test.csv", "-o", folder / "out", "--json"});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_EQ(run.out, read_bytes(folder / "out/compare.json"));
+  EXPECT_TRUE(nlohmann::json::parse(run.out)["published"].empty());
 }
 
 }  // namespace

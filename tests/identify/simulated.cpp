@@ -39,21 +39,26 @@ std::vector<std::size_t> add_gross_errors(Dataset& data, double share, std::uint
   return rows;
 }
 
-double distance_from_truth_mm(const Simulation& simulation, const Calibration& calibration, std::size_t count,
-                              std::uint64_t seed) {
+Model truth_model(const Simulation& simulation) {
   Estimate truth;
   truth.geometry = simulation.truth.geometry;
   if (simulation.truth.tracker_T_base) truth.tracker_T_base = frame_of(*simulation.truth.tracker_T_base);
   truth.flange_p_m.push_back(simulation.truth.targets.empty() ? *simulation.truth.tool_p_m
                                                               : simulation.truth.targets.front().flange_p_m);
-  const Model real(truth);
+  return Model(truth);
+}
+
+double distance_from_truth_mm(const Simulation& simulation, const Calibration& calibration, std::size_t count,
+                              std::uint64_t seed) {
+  const Geometry& geometry = simulation.truth.geometry;
+  const Model real = truth_model(simulation);
   const Model corrected(calibration.estimate);
   Random random(seed);
   double sum = 0.0;
   for (std::size_t i = 0; i < count; ++i) {
     double q[max_joints] = {};
-    for (std::int32_t j = 0; j < truth.geometry.joint_count; ++j) {
-      const Joint& joint = truth.geometry.joint[j];
+    for (std::int32_t j = 0; j < geometry.joint_count; ++j) {
+      const Joint& joint = geometry.joint[j];
       const double half = joint.kind == JointKind::revolute ? std::numbers::pi : 0.5;
       q[j] = random.uniform(joint.has_min == 1 ? joint.min : -half, joint.has_max == 1 ? joint.max : half);
     }

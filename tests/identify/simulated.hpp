@@ -17,6 +17,9 @@ offline::SimulationOptions arm_options(std::uint64_t seed);
 /// Adds errors of 1 to 50 mm in random directions to a share of the rows; returns their indices, ascending.
 std::vector<std::size_t> add_gross_errors(offline::Dataset& data, double share, std::uint64_t seed);
 
+/// The simulated arm as it is: geometry, base and its (first) target point.
+offline::Model truth_model(const offline::Simulation& simulation);
+
 /// Mean distance [mm] of the calibrated robot's target from the true one, in the tracker frame, over `count` random
 /// poses within the joint limits.
 double distance_from_truth_mm(const offline::Simulation& simulation, const offline::Calibration& calibration,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The long sweeps behind docs/method.md: identify_sweep arms|gross|coverage|methods|rules [COUNT]
+// The long sweeps behind docs/method.md: identify_sweep arms|gross|coverage|methods|moves|thresholds [COUNT] [RULE]
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -9,6 +9,7 @@
 
 #include "offline/error.hpp"
 #include "offline/simulate/family.hpp"
+#include "offline/simulate/random.hpp"
 #include "tests/identify/simulated.hpp"
 
 namespace {
@@ -87,6 +88,116 @@ void cover(std::uint64_t count, const std::string& rule) {
   }
 }
 
+// A tracker that moved before row 31 of 60: how often it is named, by the size of the move; 0 is a false alarm.
+void moves(std::uint64_t count) {
+  struct Setting {
+    const char* what;
+    double noise_mm;
+    bool stated;
+  };
+  for (const Setting& setting : {Setting{"noise 0.02 mm", 0.02, false}, Setting{"noise 0.1 mm, not stated", 0.1, false},
+                                 Setting{"noise 0.1 mm, in sigma", 0.1, true}}) {
+    for (const double shift_mm : {0.0, 0.05, 0.1, 0.15, 0.2, 0.3, 0.5, 1.0, 2.0}) {
+      std::size_t named = 0, refused = 0, all = 0;
+      double worst = 0;
+      for (const std::string& family : family_names()) {
+        for (std::uint64_t seed = 1; seed <= count; ++seed) {
+          SimulationOptions so = arm_options(seed);
+          so.noise_m = 1e-3 * setting.noise_mm;
+          so.state_sigma = setting.stated;
+          Simulation s = simulate(family_robot(family), so);
+          Random random(seed);
+          Vector3 shift{random.normal(), random.normal(), random.normal()};
+          const double length = std::sqrt(shift[0] * shift[0] + shift[1] * shift[1] + shift[2] * shift[2]);
+          for (std::size_t i = 30; i < s.train.rows.size(); ++i) {
+            for (std::size_t k = 0; k < 3; ++k) s.train.rows[i].position_m[k] += 1e-3 * shift_mm * shift[k] / length;
+          }
+          ++all;
+          try {
+            worst = std::max(worst, distance_from_truth_mm(s, calibrate(s.nominal, s.train, {}), 200, seed));
+          } catch (const std::runtime_error& e) {
+            (std::string(e.what()).find("moved before row") != std::string::npos ? named : refused) += 1;
+          }
+        }
+      }
+      std::printf("%-26s move %.2f mm: named %zu of %zu, refused otherwise %zu; worst mean error of the rest %.3f mm\n",
+                  setting.what, shift_mm, named, all, refused, worst);
+    }
+  }
+}
+
+// Two kinds of arm that no threshold was chosen on: one that slides, and one with an elbow off to the side.
+Robot other_robot(const std::string& kind) {
+  if (kind == "scara") {
+    return parse_robot(
+        "name = \"scara\"\n[[link]]\nd = 300\nmin = -170\nmax = 170\n[[link]]\na = 325\nmin = -145\nmax = 145\n"
+        "[[link]]\njoint = \"prismatic\"\nalpha = 180\na = 275\nmin = 0\nmax = 200\n"
+        "[[link]]\nmin = -170\nmax = 170\n[tool]\nxyz = [60, 40, 80]\n",
+        "scara");
+  }
+  if (kind == "offset elbow") {
+    return parse_robot(
+        "name = \"offset elbow\"\n[[link]]\nd = 660\nmin = -160\nmax = 160\n"
+        "[[link]]\nalpha = -90\nmin = -110\nmax = 110\n[[link]]\na = 432\nd = 149\nmin = -135\nmax = 135\n"
+        "[[link]]\nalpha = -90\na = -20\nd = 433\nmin = -110\nmax = 170\n"
+        "[[link]]\nalpha = 90\nmin = -100\nmax = 100\n[[link]]\nalpha = -90\nd = 56\nmin = -170\nmax = 170\n"
+        "[tool]\nxyz = [60, 40, 80]\n",
+        "offset elbow");
+  }
+  return family_robot(kind);
+}
+
+// The outlier rules on seeds, arms and conditions that no threshold was chosen on.
+void thresholds(std::uint64_t count) {
+  struct Setting {
+    const char* what;
+    std::size_t poses;
+    double noise_mm, gross_share, gross_mm;
+  };
+  const Setting settings[] = {{"30 poses", 30, 0.02, 0.05, 0},          {"100 poses", 100, 0.02, 0.05, 0},
+                              {"noise 0.1 mm, not stated", 60, 0.1, 0.05, 0}, {"10 % gross", 60, 0.02, 0.1, 0},
+                              {"20 % gross", 60, 0.02, 0.2, 0},         {"gross of 0.15 mm", 60, 0.02, 0.05, 0.15},
+                              {"gross of 0.3 mm", 60, 0.02, 0.05, 0.3}};
+  for (const Setting& setting : settings) {
+    std::size_t named_gross = 0, all_gross = 0, named_good = 0, all_good = 0, refused = 0;
+    double clean = 0, gross = 0;
+    for (const std::string family : {"three-parallel", "spherical-wrist", "seven-joint", "five-joint", "scara",
+                                     "offset elbow"}) {
+      for (std::uint64_t seed = 20001; seed < 20001 + count; ++seed) {
+        SimulationOptions so = arm_options(seed);
+        so.configurations = setting.poses;
+        so.noise_m = 1e-3 * setting.noise_mm;
+        Simulation s = simulate(other_robot(family), so);
+        const double without = distance_from_truth_mm(s, calibrate(s.nominal, s.train, {}), 300, seed);
+        std::vector<std::size_t> bad;
+        const Dataset before = s.train;
+        bad = add_gross_errors(s.train, setting.gross_share, seed);
+        for (const std::size_t row : bad) {
+          if (!(setting.gross_mm > 0)) break;
+          Vector3& p = s.train.rows[row].position_m;
+          const Vector3& q = before.rows[row].position_m;
+          const double length = std::hypot(p[0] - q[0], p[1] - q[1], p[2] - q[2]);
+          for (std::size_t k = 0; k < 3; ++k) p[k] = q[k] + 1e-3 * setting.gross_mm * (p[k] - q[k]) / length;
+        }
+        try {
+          const Calibration c = calibrate(s.nominal, s.train, {});
+          clean += without;
+          gross += distance_from_truth_mm(s, c, 300, seed);
+          for (const RowResult& r : c.rows) {
+            const bool is_bad = std::binary_search(bad.begin(), bad.end(), r.row);
+            (is_bad ? all_gross : all_good) += 1;
+            if (r.outlier) (is_bad ? named_gross : named_good) += 1;
+          }
+        } catch (const std::runtime_error&) {
+          ++refused;
+        }
+      }
+    }
+    std::printf("%-26s gross named %zu of %zu, good named %zu of %zu, error with / without gross %.3f, refused %zu\n",
+                setting.what, named_gross, all_gross, named_good, all_good, gross / clean, refused);
+  }
+}
+
 void methods(std::uint64_t count) {
   for (const std::string& family : family_names()) {
     for (const char* method : {"nc", "lsm", "gd", "gn", "lm", "ekf", "rpim"}) {
@@ -119,6 +230,8 @@ int main(int argc, char** argv) {
   else if (what == "gross") arms(count, true, rule);
   else if (what == "coverage") cover(count, rule);
   else if (what == "methods") methods(count);
-  else std::fprintf(stderr, "usage: identify_sweep arms|gross|coverage|methods [COUNT] [RULE]\n");
+  else if (what == "moves") moves(count);
+  else if (what == "thresholds") thresholds(count);
+  else std::fprintf(stderr, "usage: identify_sweep arms|gross|coverage|methods|moves|thresholds [COUNT] [RULE]\n");
   return 0;
 }
