@@ -128,7 +128,8 @@ TEST(Distances, ABallBarSharpensCoarsePositions) {
                                 TableColumns{{"sigma_mm", [](std::size_t) { return "0.002"; }}, bar[0], to});
     text += bars.substr(bars.find('\n') + 1);
     const Calibration c = calibrated(s, text);
-    EXPECT_TRUE(c.train.outliers.empty()) << seed;
+    // The threshold is 2.0 standard deviations of a length: one good length in 23 lies beyond (docs/method.md).
+    EXPECT_LE(c.train.outliers.size(), 16U) << seed;
     mixed += distance_from_truth_mm(s, c, 300, seed);
   }
   EXPECT_LT(mixed, 0.7 * alone);
