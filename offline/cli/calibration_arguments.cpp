@@ -13,6 +13,10 @@ void add_calibration_arguments(CLI::App& command, CalibrationArguments& a) {
   command.add_option("-o,--output", a.directory, "Folder to write")->required();
   command.add_flag("--json", a.json, "Print the result as JSON on stdout, and nothing else there");
   command.add_option("--test", a.test, "Measurements that enter nothing but the final figures (CSV)");
+  add_identification_options(command, a);
+}
+
+void add_identification_options(CLI::App& command, CalibrationArguments& a) {
   command.add_option("--test-fraction", a.test_fraction, "Share of the groups to hold out as test, in (0, 1)");
   command.add_option("--base", a.base, "fit, or given: positions are in the robot's base frame (or [base])")
       ->check(CLI::IsMember({"fit", "given"}))

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The arguments that `calibrate` and `compare` share.
+// The arguments that `calibrate` and `compare` share, and `batch` but for the files.
 #pragma once
 
 #include <optional>
@@ -23,7 +23,10 @@ struct CalibrationArguments {
   CalibrationOptions options;
 };
 
-/// Adds ROBOT, MEASUREMENTS and the options that decide what is fitted and tested.
+/// Adds the options that decide what is fitted.
+void add_identification_options(CLI::App& command, CalibrationArguments& arguments);
+
+/// Adds ROBOT, MEASUREMENTS, what is tested on, and the options that decide what is fitted.
 void add_calibration_arguments(CLI::App& command, CalibrationArguments& arguments);
 
 /// The options as the arguments state them. Throws InputError if two of them contradict each other.

@@ -61,7 +61,10 @@ void run(Arguments arguments) {
     return simulate(robot, options, progress.callback());
   }();
   folder.write("robot.toml", write_robot(simulation.nominal));
-  folder.write("measurements.csv", measurement_text(simulation.train, simulation.nominal));
+  {
+    Progress progress("write", verbosity() != Verbosity::quiet);
+    folder.write("measurements.csv", measurement_text(simulation.train, simulation.nominal, progress.callback()));
+  }
   folder.write("test.csv", measurement_text(simulation.test, simulation.nominal));
   folder.write("truth.toml", write_robot(simulation.truth));
   folder.write("truth.json", truth_json(arguments, simulation));

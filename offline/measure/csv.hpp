@@ -29,6 +29,8 @@ class Csv {
   double number(std::size_t column) const;
 
   const std::string& path() const { return path_; }
+  /// How far the text is read, in bytes.
+  std::size_t position() const { return at_; }
   /// The line of the row, or of the header before the first next().
   long line() const { return line_; }
   /// The column of the line in which a field of the row begins.

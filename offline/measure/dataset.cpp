@@ -36,8 +36,9 @@ class Names {
 
 class Reader {
  public:
-  Reader(const std::string& text, const std::string& path, const Robot& robot)
-      : csv_(text, path, "a measurement file"), columns_(csv_), robot_(robot) {
+  Reader(const std::string& text, const std::string& path, const Robot& robot,
+         const std::function<void(std::size_t, std::size_t)>& progress)
+      : progress_(progress), kilobytes_(text.size() / 1000), csv_(text, path, "a measurement file"), columns_(csv_), robot_(robot) {
     data_.path = path;
     data_.joint_count = static_cast<std::size_t>(robot.geometry.joint_count);
     data_.digest_sha256 = sha256_hex(text);
@@ -45,7 +46,10 @@ class Reader {
 
   Dataset read() {
     find_columns();
-    while (csv_.next()) read_row();
+    while (csv_.next()) {
+      read_row();
+      if (progress_ && seen_ % 4096 == 0) progress_(csv_.position() / 1000, kilobytes_);
+    }
     link_distances();
     add_notes();
     if (data_.rows.empty()) {
@@ -282,6 +286,8 @@ class Reader {
     long line, column;
   };
 
+  const std::function<void(std::size_t, std::size_t)>& progress_;
+  const std::size_t kilobytes_;
   Csv csv_;
   Columns columns_;
   const Robot& robot_;
@@ -303,11 +309,12 @@ std::string row_name(const Dataset& data, const Measurement& row) {
 }
 
 Dataset parse_dataset(const std::string& text, const std::string& path, const Robot& robot) {
-  return Reader(text, path, robot).read();
+  return Reader(text, path, robot, {}).read();
 }
 
-Dataset read_dataset(const std::string& path, const Robot& robot) {
-  return parse_dataset(read_file(path, "a measurement file"), path, robot);
+Dataset read_dataset(const std::string& path, const Robot& robot,
+                     const std::function<void(std::size_t, std::size_t)>& progress) {
+  return Reader(read_file(path, "a measurement file"), path, robot, progress).read();
 }
 
 }  // namespace mdhcal::offline

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -52,7 +53,9 @@ struct Dataset {
 std::string row_name(const Dataset& data, const Measurement& row);
 
 /// Reads a measurement file (CSV, DESIGN.md). Throws InputError naming file, line, column, found and expected.
-Dataset read_dataset(const std::string& path, const Robot& robot);
+/// `progress`, if given, is called now and then with the kilobytes read and all of them.
+Dataset read_dataset(const std::string& path, const Robot& robot,
+                     const std::function<void(std::size_t, std::size_t)>& progress = {});
 Dataset parse_dataset(const std::string& text, const std::string& path, const Robot& robot);
 
 }  // namespace mdhcal::offline

@@ -8,7 +8,8 @@
 
 namespace mdhcal::offline {
 
-std::string measurement_text(const Dataset& dataset, const Robot& robot) {
+std::string measurement_text(const Dataset& dataset, const Robot& robot,
+                             const std::function<void(std::size_t, std::size_t)>& progress) {
   const auto any = [&](auto&& holds) { return std::any_of(dataset.rows.begin(), dataset.rows.end(), holds); };
   if (any([](const Measurement& row) { return row.kind == MeasurementKind::distance; })) {
     throw std::invalid_argument("distance rows have no column in this writer");
@@ -29,7 +30,9 @@ std::string measurement_text(const Dataset& dataset, const Robot& robot) {
   if (sigma) text += ",sigma_mm";
   if (pose) text += ",qw,qx,qy,qz";
   text += '\n';
+  std::size_t done = 0;
   for (const Measurement& row : dataset.rows) {
+    if (progress) progress(done++, dataset.rows.size());
     text += row.id;
     if (grouped) text += ',' + dataset.groups[row.group];
     if (several_targets) text += ',' + dataset.targets[row.target];

@@ -94,6 +94,22 @@ TEST(Batch, SlicesMakeTheSameFleetAndWhatIsDoneStays) {
   EXPECT_EQ(parts, contents(folder / "whole"));
 }
 
+TEST(Batch, TakesTheOptionsOfCalibrateAndPrintsJson) {
+  const TemporaryFolder folder;
+  write_fleet(folder, 3, 25, true);
+  const auto run = run_mdhcal({"batch", folder / "in/fleet.csv", "-o", folder / "out", "--fix", "a3", "--noise", "0.05", "--json"});
+  EXPECT_EQ(run.exit_code, 1);
+  const auto json = nlohmann::json::parse(run.out);
+  ASSERT_EQ(json["robots"].size(), 3u);
+  EXPECT_EQ(json["robots"][0]["state"], "calibrated");
+  EXPECT_EQ(json["robots"][1]["state"], "refused");
+  EXPECT_NE(json["robots"][1]["message"].get<std::string>().find("m2.csv"), std::string::npos);
+  EXPECT_EQ(json["summary"], folder / "out/summary.csv");
+  ASSERT_EQ(run_mdhcal({"calibrate", folder / "in/r1.toml", folder / "in/m1.csv", "--test", folder / "in/t1.csv", "--fix", "a3",
+                        "--noise", "0.05", "-o", folder / "alone"}).exit_code, 0);
+  EXPECT_EQ(read_bytes(folder / "out/unit 1/result.json"), read_bytes(folder / "alone/result.json"));
+}
+
 // The example of the help, under GNU parallel.
 TEST(Batch, RunsUnderGnuParallel) {
   const TemporaryFolder folder;
