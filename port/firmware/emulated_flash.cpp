@@ -33,6 +33,7 @@ Status read(void* context, std::uint32_t address, std::uint8_t* to, std::uint32_
 
 Status program(void* context, std::uint32_t address, const std::uint8_t* granule) {
   EmulatedFlash& flash = self(context);
+  if (flash.fail_after != 0 && flash.changes >= flash.fail_after) return Status::flash_program;
   for (std::uint32_t i = 0; i < geometry.granule_bytes; ++i) {
     if (flash.bytes[address + i] != geometry.erased_value) return Status::flash_program;
   }

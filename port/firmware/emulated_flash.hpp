@@ -16,6 +16,7 @@ struct EmulatedFlash {
   std::uint8_t* bytes;
   bool read_fails = false;        ///< every read reports an error, as an ECC error would
   std::uint32_t cut_after = 0;    ///< the power goes after so many changes; 0: never
+  std::uint32_t fail_after = 0;   ///< from this change on, programming fails; 0: never
   std::uint32_t changes = 0;
 };
 

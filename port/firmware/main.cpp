@@ -4,7 +4,7 @@
 //   --serial S         accept blobs for this robot only
 //   --allow-nominal    move with nominal joints where there is no acceptable blob
 //   --ticks N          end after N milliseconds
-//   --flash-read-fails, --cut-after N    faults of the emulated flash, for tests
+//   --flash-read-fails, --cut-after N, --fail-after N    faults of the emulated flash, for tests
 #include <cstdlib>
 #include <cstring>
 
@@ -76,7 +76,7 @@ void take_update(const mdhcal::Flash& flash, const Options& options, mdhcal::Sto
   }
   Line("update: committed to slot ") << state.active << ", sequence " << state.sequence;
   motion.request(*context.target);
-  motion.enable();
+  motion.enable(options.allow_nominal);
 }
 
 void trace_motion(const char* begin) {
@@ -98,8 +98,10 @@ void trace_swap(Swap& last) {
   last = now;
   if (now == Swap::done) Line("swap: done");
   if (now == Swap::refused) {
-    Line("swap: refused, joint ") << motion.refused_joint() + 1
-                                  << " would change by more than the bound; the active model stays";
+    Line("swap: refused, joint ") << motion.refused_joint() + 1 << " would change by more than the bound; "
+                                  << (motion.active() != nullptr ? "the active model stays"
+                                      : motion.enabled()         ? "nominal joints, as the integrator allows"
+                                                                 : "no motion");
   }
 }
 
@@ -119,10 +121,10 @@ void boot(const mdhcal::Flash& flash, const Options& options, mdhcal::StoreState
     Line("boot: slot ") << state.active << ", sequence " << state.sequence << ", robot "
                         << context.target->model.name << ", serial " << context.target->model.serial;
     motion.request(*context.target);
-    motion.enable();
+    motion.enable(options.allow_nominal);
   } else if (options.allow_nominal) {
     Line("boot: ") << mdhcal::text(status) << "; moving with nominal joints, as the integrator allows";
-    motion.enable();
+    motion.enable(true);
   } else {
     Line("boot: ") << mdhcal::text(status) << "; no motion";
   }
@@ -135,6 +137,7 @@ Options read_options(int count, char** arguments, EmulatedFlash& flash) {
     if (std::strcmp(arguments[i], "--serial") == 0) options.serial = value;
     if (std::strcmp(arguments[i], "--ticks") == 0) options.ticks = static_cast<std::uint32_t>(std::atoi(value));
     if (std::strcmp(arguments[i], "--cut-after") == 0) flash.cut_after = static_cast<std::uint32_t>(std::atoi(value));
+    if (std::strcmp(arguments[i], "--fail-after") == 0) flash.fail_after = static_cast<std::uint32_t>(std::atoi(value));
     if (std::strcmp(arguments[i], "--allow-nominal") == 0) options.allow_nominal = true;
     if (std::strcmp(arguments[i], "--flash-read-fails") == 0) flash.read_fails = true;
   }

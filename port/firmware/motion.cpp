@@ -56,9 +56,15 @@ void Motion::tick() {
   if (const Correction* requested = requested_.exchange(nullptr); requested != nullptr && !begin_swap(*requested)) {
     swap_.store(Swap::refused);
   }
+  const Correction* active = active_.load();
+  if (active == nullptr && next_ == nullptr && !nominal_allowed_.load()) {
+    report_ = {};
+    path_ticks_ = 0;
+    enabled_.store(false);
+    return;
+  }
 
   bool met = true;
-  const Correction* active = active_.load();
   if (active == nullptr) {
     copy(report_.path_q, active_q_);
   } else {

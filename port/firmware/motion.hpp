@@ -32,8 +32,12 @@ enum class Swap : std::int32_t { none, running, done, refused };
 /// break into anywhere but which never breaks into the interrupt: one pointer each way is all that they share.
 class Motion {
  public:
-  /// Lets the loop run along the path, nominal joints as they are until a swap brings a model.
-  void enable() { enabled_.store(true); }
+  /// Lets the loop run along the path. Where there is no model, because its swap was refused, it moves with nominal
+  /// joints if that is allowed, and is disabled again if not.
+  void enable(bool nominal_allowed) {
+    nominal_allowed_.store(nominal_allowed);
+    enabled_.store(true);
+  }
   bool enabled() const { return enabled_.load(); }
   /// Asks for a swap at the next tick. The correction must stay as it is until another is active.
   void request(const Correction& next) {
@@ -63,6 +67,7 @@ class Motion {
   bool begin_swap(const Correction& next);
 
   std::atomic<bool> enabled_{false};
+  std::atomic<bool> nominal_allowed_{false};
   std::atomic<const Correction*> requested_{nullptr};
   std::atomic<const Correction*> active_{nullptr};
   std::atomic<Swap> swap_{Swap::none};

@@ -14,11 +14,13 @@ import sys
 import tempfile
 import threading
 import unittest
+import zlib
 
 ROOT = pathlib.Path(__file__).resolve().parents[3]
 FLASH_BYTES = 16 << 20
 SLOT = 8192
 MAX_STEP = 0.00314
+DOUBLE_VECTORS = 2368  # of the blob: the first self-test vector's first reading
 
 # Three parallel axes, in millimetres and degrees (Li 2022, Table 1).
 NOMINAL = [(0.0, 0.0, 99.927), (90.0, 0.0, 106.95), (0.0, 428.052, 0.0), (0.0, 398.551, 0.0), (-90.0, 0.0, 93.16),
@@ -179,7 +181,8 @@ class Firmware(unittest.TestCase):
         return motion
 
     def expect_still(self, board):
-        self.assertFalse(board.has("swap"))
+        self.assertFalse(board.has("swap: done"))
+        self.assertTrue(board.motion())
         for row in board.motion():
             self.assertEqual(row["command"], [0.0] * 6)
 
@@ -269,12 +272,35 @@ class Firmware(unittest.TestCase):
         board.wait_for("update: refused, CRC-32 mismatch; the active model stays")
         board.send_blob(self.blob["other"])
         board.wait_for("update: refused, made for another robot; the active model stays")
+        # The CRC-32 holds, but not what the self-test computes.
+        wrong = bytearray(self.blob["second"])
+        wrong[DOUBLE_VECTORS] ^= 1
+        wrong[-4:] = struct.pack("<I", zlib.crc32(wrong[:-4]))
+        board.send_blob(bytes(wrong))
+        board.wait_for("self-test: self-test failed")
+        board.wait_for("update: refused, self-test failed; the active model stays")
         before = len(board.motion())
         for _ in range(3):
             board.wait_for("tick ")
         self.assertEqual(board.quit(), 0)
         self.assertFalse(board.has("flash:"))
         self.expect_true_to("first", self.expect_gentle(board)[before:])
+
+    def test_an_update_that_the_flash_fails_keeps_the_active_model(self):
+        flash = self.flash("first")
+        board = self.start(flash, "--fail-after", "60")
+        board.wait_for("swap: done")
+        board.send_blob(self.blob["second"])
+        board.wait_for("update: refused, flash program failed; the active model stays")
+        before = len(board.motion())
+        for _ in range(3):
+            board.wait_for("tick ")
+        self.assertEqual(board.quit(), 0)
+        self.expect_true_to("first", self.expect_gentle(board)[before:])
+        again = self.start(flash, "--ticks", "700")
+        self.assertEqual(again.finish(), 0)
+        self.assertTrue(again.has("boot: slot 0, sequence 7"))
+        self.expect_gentle(again)
 
     def test_a_swap_that_would_change_a_joint_too_much_is_refused(self):
         board = self.start(self.flash("first"))
@@ -286,6 +312,23 @@ class Firmware(unittest.TestCase):
             board.wait_for("tick ")
         self.assertEqual(board.quit(), 0)
         self.expect_true_to("first", self.expect_gentle(board)[before:])
+
+    def test_a_blob_too_far_from_nominal_at_boot_is_no_motion_that_nobody_allowed(self):
+        board = self.start(self.flash("far"))
+        board.wait_for("swap: refused, joint")
+        self.assertIn("no motion", board.lines[-1])
+        for _ in range(3):
+            board.wait_for("tick ")
+        self.expect_still(board)
+        board.send_blob(self.blob["first"])
+        board.wait_for("swap: done")
+        board.wait_for("tick ")
+        self.assertEqual(board.quit(), 0)
+        self.expect_true_to("first", [row for row in self.expect_gentle(board) if row["mode"] == "corrected"])
+        allowed = self.start(self.flash("far"), "--allow-nominal", "--ticks", "500")
+        self.assertEqual(allowed.finish(), 0)
+        self.assertTrue(allowed.has("nominal joints, as the integrator allows"))
+        self.assertTrue(all(row["mode"] == "nominal" for row in self.expect_gentle(allowed)))
 
     def test_no_blob_no_motion_until_one_comes(self):
         board = self.start(self.flash())

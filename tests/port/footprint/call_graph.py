@@ -27,7 +27,8 @@ class CallGraph:
                     self.unbounded.add(title)
             for source, callee in re.findall(r'edge: \{ sourcename: "([^"]+)" targetname: "([^"]+)"', text):
                 self.calls.setdefault(key(path, source), set()).add(key(path, callee))
-        self._read_image(target, image)
+        if target.bare_metal:
+            self._read_image(target, image)
 
     def _read_image(self, target, image):
         # One function may have several names (__aeabi_dadd, __adddf3); the disassembly shows one of them.

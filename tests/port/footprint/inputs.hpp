@@ -44,9 +44,9 @@ inline mdhcal::Geometry nominal_arm() {
 }
 
 /// The same with errors of up to 1 mm and 0.1 degrees in every parameter.
-inline mdhcal::Geometry calibrated_arm() {
+inline mdhcal::Geometry calibrated_arm(std::uint64_t seed = 20220822) {
   constexpr double tenth_deg = 3.14159265358979323846 / 1800.0;
-  Random random(20220822);
+  Random random(seed);
   mdhcal::Geometry geometry = nominal_arm();
   for (int i = 0; i < 6; ++i) {
     mdhcal::Link& link = geometry.link[i];
@@ -59,16 +59,21 @@ inline mdhcal::Geometry calibrated_arm() {
   return geometry;
 }
 
-enum class Set { regular, near_singular };
+/// Joints at least 0.3 rad from the wrist's and the elbow's singularity, within 0.01 rad of one or both, or by turns.
+enum class Set { regular, near_singular, mixed };
 
-/// Joints at least 0.3 rad from the wrist's and the elbow's singularity, or within 0.01 rad of one or both.
-inline void joints(Set set, Random& random, double (&q_rad)[6]) {
+inline const char* name_of(Set set) {
+  return set == Set::regular ? "regular" : set == Set::near_singular ? "near-singular" : "mixed";
+}
+
+/// Those of input number `i`.
+inline void joints(Set set, int i, Random& random, double (&q_rad)[6]) {
   for (double& q : q_rad) q = random.uniform(-3.1, 3.1);
   const double side_elbow = q_rad[2] < 0 ? -1 : 1;
   const double side_wrist = q_rad[4] < 0 ? -1 : 1;
   q_rad[2] = side_elbow * random.uniform(0.3, 2.8);
   q_rad[4] = side_wrist * random.uniform(0.3, 2.8);
-  if (set == Set::near_singular) {
+  if (set == Set::near_singular || (set == Set::mixed && i % 2 != 0)) {
     const double which = random.uniform(0, 3);
     if (which < 2) q_rad[4] = random.uniform(-0.01, 0.01);
     if (which > 1) q_rad[2] = random.uniform(-0.01, 0.01);

@@ -30,7 +30,8 @@ def problems(target):
             found = re.match(rf"({FLAT}\S*)\s+(\d+)", line)
             if found and int(found.groups()[-1]) > 0:
                 yield f"{archive.name} has {found.groups()[-1]} bytes of {found.group(1)}"
-    kind = "arm" if "arm" in target.compiler else "aarch64" if "aarch64" in target.compiler else "x86"
+    name = pathlib.Path(target.compiler).name
+    kind = next((kind for kind in ("aarch64", "arm") if kind in name), "x86")
     for archive in target.archives:
         for line in target.tool("objdump", "-d", archive).splitlines():
             if re.search(FUSED[kind], line):

@@ -25,7 +25,8 @@ class Target:
         flags = re.search(r'MDHCAL_CPU_FLAGS "(.*)"', settings)
         self.flags = flags.group(1).split() if flags else []
         self.bare_metal = bool(flags)
-        self.compiler = "arm-none-eabi-g++" if flags else re.search(r"CMAKE_CXX_COMPILER (\S+)\)", settings or "CMAKE_CXX_COMPILER g++)").group(1)
+        known = next(self.build.glob("CMakeFiles/*/CMakeCXXCompiler.cmake")).read_text()
+        self.compiler = re.search(r'set\(CMAKE_CXX_COMPILER "(.+)"\)', known).group(1)
         self.prefix = self.compiler[: -len("g++")]
         self.archives = [self.build / "port/libmdhcal_port.a", self.build / "lib/libmdhcal_rt.a"]
         for archive in self.archives:

@@ -1,0 +1,31 @@
+# SPDX-License-Identifier: MIT
+"""The figures that were asked for, by preset: what, a row of the tables, its column, the bound, and how it is put."""
+from typing import NamedTuple
+
+
+class Budget(NamedTuple):
+    preset: str
+    what: str
+    row: tuple       # the row's names; an input set of None: the largest over all sets
+    column: str
+    bound: int
+    unit: str
+
+
+TICK = "`tick(Arm<double>, TickOptions<double>, Pose<double>, double, TickReport<double>)`"
+FORWARD = "`forward(Arm<double>, double, Pose<double>)`"
+
+BUDGETS = [
+    Budget("cortex-m7", "forward", ("forward", "double", None), "max", 1900, "instructions"),
+    Budget("cortex-m7", "forward with Jacobian", ("forward+jacobian", "double", None), "max", 2300, "instructions"),
+    Budget("cortex-m7", "warm tick, median", ("tick", "double", "regular"), "median", 12000, "instructions"),
+    Budget("cortex-m7", "tick, largest on any input", ("tick", "double", None), "max", 550000, "instructions"),
+    Budget("cortex-m7", "stack of the tick, painted", ("tick", "double", None), "stack painted", 3364, "bytes"),
+    Budget("cortex-m7", "stack of the tick, by the call graph", (TICK,), "stack bound", 3364, "bytes"),
+    Budget("cortex-m7", "forward-only image", (FORWARD,), "code and constants", 4096, "bytes"),
+    Budget("cortex-m7", "everything in double", ("everything in double",), "code and constants", 65536, "bytes"),
+    Budget("cortex-m7", "everything in float", ("everything in float",), "code and constants", 65536, "bytes"),
+    Budget("cortex-m7", "decoding a blob", ("decode", "-", None), "max", 60000, "instructions"),
+    Budget("cortex-m4f", "forward, float", ("forward", "float", None), "max", 1600, "instructions"),
+    Budget("cortex-m4f", "warm tick, float, median", ("tick", "float", "regular"), "median", 8000, "instructions"),
+]

@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: MIT
+#include "mdhcal/environment.hpp"
+#include "meter.hpp"
+
+namespace footprint {
+
+namespace {
+
+using namespace mdhcal;
+
+Geometry geometry;
+
+template <class Real>
+void measure_preparation() {
+  using S = State<Real>;
+  static SolutionOptions<Real> solution_options;
+  [[maybe_unused]] static Family found;
+  const char* precision = precision_name<Real>;
+  constexpr int count = input_count;
+  const auto another = [](int i) {
+    geometry = calibrated_arm(static_cast<std::uint64_t>(i) + 1);
+    S::status = make_arm(geometry, S::arm);
+  };
+  measure("make_arm", precision, "arms", count, another, [] { S::status = make_arm(geometry, S::arm); });
+  measure("make_compensator", precision, "arms", count, another,
+          [] { S::status = make_compensator(geometry, geometry, S::compensator); });
+  measure("default_tick_options", precision, "arms", count, another, [] { S::options = default_tick_options(S::arm); });
+  measure("default_solution_options", precision, "arms", count, another,
+          [] { solution_options = default_solution_options(S::arm); });
+  measure("family", precision, "arms", count, another, [] { found = family(S::arm); });
+}
+
+template <class Real>
+void measure_kinematics() {
+  using S = State<Real>;
+  static Jacobian<Real> jacobian;
+  static Frame<Real> frames[max_joints + 2];
+  const char* precision = precision_name<Real>;
+  for (Set set : {Set::regular, Set::near_singular}) {
+    Random random(1);
+    const auto prepare = [&](int i) {
+      double q_rad[6];
+      joints(set, i, random, q_rad);
+      S::set_joints(q_rad);
+    };
+    measure("forward", precision, name_of(set), input_count, prepare, [] { S::status = forward(S::arm, S::q, S::pose); });
+    measure("forward+jacobian", precision, name_of(set), input_count, prepare,
+            [] { S::status = forward(S::arm, S::q, S::pose, jacobian); });
+    measure("link_frames", precision, name_of(set), input_count, prepare,
+            [] { S::status = link_frames(S::arm, S::q, frames); });
+  }
+}
+
+// One tick at 1 kHz: targets up to 3 mrad a joint away, or anywhere.
+template <class Real>
+void measure_tick() {
+  using S = State<Real>;
+  static TickReport<Real> report;
+  const auto call = [] { S::status = tick(S::arm, S::options, S::pose, S::q, &report); };
+  S::options = default_tick_options(S::arm);
+  S::limit_steps();
+  Random random(2);
+  double q_rad[6], target_rad[6];
+  for (Set set : {Set::regular, Set::near_singular}) {
+    const auto prepare = [&](int i) {
+      joints(set, i, random, q_rad);
+      for (int k = 0; k < 6; ++k) target_rad[k] = q_rad[k] + random.uniform(-0.003, 0.003);
+      S::set_joints(target_rad);
+      S::status = forward(S::arm, S::q, S::pose);
+      S::set_joints(q_rad);
+    };
+    measure("tick", precision_name<Real>, name_of(set), tick_count<Real>, prepare, call);
+  }
+  const auto far = [&](int i) {
+    joints(Set::mixed, i, random, q_rad);
+    S::set_joints(q_rad);
+    S::status = forward(S::arm, S::q, S::pose);
+    for (Real& p : S::pose.position_m) p = static_cast<Real>(random.uniform(-2, 2));
+    joints(i % 3 == 0 ? Set::regular : Set::near_singular, i, random, q_rad);
+    S::set_joints(q_rad);
+  };
+  measure("tick", precision_name<Real>, "far", tick_count<Real>, far, call);
+}
+
+}  // namespace
+
+void measure_arm() {
+  measure("check_environment", "-", "once", 1, [](int) {}, [] { State<float>::status = check_environment(); });
+  measure("check", "-", "arms", input_count, [](int i) { geometry = calibrated_arm(static_cast<std::uint64_t>(i) + 1); },
+          [] { State<float>::status = check(geometry); });
+  measure_preparation<double>();
+  measure_preparation<float>();
+  geometry = calibrated_arm();
+  State<double>::status = make_arm(geometry, State<double>::arm);
+  State<float>::status = make_arm(geometry, State<float>::arm);
+  measure_kinematics<double>();
+  measure_kinematics<float>();
+  measure_tick<double>();
+  measure_tick<float>();
+}
+
+}  // namespace footprint
