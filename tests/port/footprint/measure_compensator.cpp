@@ -50,7 +50,7 @@ void measure_forms() {
     }
   }
   S::ramp = rest(S::compensator, true);
-  three("swap", tick_count<Real> / 10, [&](int i) {
+  three("swap", input_count / 10, [&](int i) {
     follow_path<Real>(Set::mixed, i, random);
     for (int k = 0; k < 6; ++k) S::q[k] = S::meant_q[k];
   });
