@@ -6,7 +6,7 @@
 #include <cmath>
 #include <thread>
 
-#include "offline/assess/statistics.hpp"
+#include "offline/identify/statistics.hpp"
 #include "offline/identify/reduction.hpp"
 #include "offline/identify/tikhonov.hpp"
 #include "offline/simulate/random.hpp"

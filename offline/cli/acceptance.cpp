@@ -5,7 +5,7 @@
 #include <cstdio>
 
 #include "offline/assess/iso9283.hpp"
-#include "offline/assess/statistics.hpp"
+#include "offline/identify/statistics.hpp"
 #include "offline/cli/blob_command.hpp"
 #include "offline/error.hpp"
 #include "offline/output/blob_file.hpp"

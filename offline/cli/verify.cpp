@@ -7,7 +7,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "offline/assess/statistics.hpp"
+#include "offline/identify/statistics.hpp"
 #include "offline/cli/acceptance.hpp"
 #include "offline/cli/blob_command.hpp"
 #include "offline/cli/blob_registration.hpp"

@@ -7,9 +7,10 @@
 #include <random>
 
 #include "mdhcal/arm.hpp"
+#include "mdhcal/kinematics.hpp"
 #include "mdhcal/self_test.hpp"
-#include "offline/error.hpp"
 #include "mdhcal/solutions.hpp"
+#include "offline/error.hpp"
 #include "tests/lib/arms.hpp"
 #include "tests/output/sample_robot.hpp"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "offline/assess/statistics.hpp"
+#include "offline/identify/statistics.hpp"
 
 #include <gtest/gtest.h>
 
