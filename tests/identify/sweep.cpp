@@ -128,23 +128,27 @@ void moves(std::uint64_t count) {
 
 // Two kinds of arm that no threshold was chosen on: one that slides, and one with an elbow off to the side.
 Robot other_robot(const std::string& kind) {
+  struct Row {
+    double alpha_deg, a_mm, d_mm, min, max;
+    bool slides;
+  };
+  std::vector<Row> rows;
   if (kind == "scara") {
-    return parse_robot(
-        "name = \"scara\"\n[[link]]\nd = 300\nmin = -170\nmax = 170\n[[link]]\na = 325\nmin = -145\nmax = 145\n"
-        "[[link]]\njoint = \"prismatic\"\nalpha = 180\na = 275\nmin = 0\nmax = 200\n"
-        "[[link]]\nmin = -170\nmax = 170\n[tool]\nxyz = [60, 40, 80]\n",
-        "scara");
+    rows = {{0, 0, 300, -170, 170, false}, {0, 325, 0, -145, 145, false}, {180, 275, 0, 0, 200, true},
+            {0, 0, 0, -170, 170, false}};
+  } else if (kind == "offset elbow") {
+    rows = {{0, 0, 660, -160, 160, false},   {-90, 0, 0, -110, 110, false},  {0, 432, 149, -135, 135, false},
+            {-90, -20, 433, -110, 170, false}, {90, 0, 0, -100, 100, false}, {-90, 0, 56, -170, 170, false}};
+  } else {
+    return family_robot(kind);
   }
-  if (kind == "offset elbow") {
-    return parse_robot(
-        "name = \"offset elbow\"\n[[link]]\nd = 660\nmin = -160\nmax = 160\n"
-        "[[link]]\nalpha = -90\nmin = -110\nmax = 110\n[[link]]\na = 432\nd = 149\nmin = -135\nmax = 135\n"
-        "[[link]]\nalpha = -90\na = -20\nd = 433\nmin = -110\nmax = 170\n"
-        "[[link]]\nalpha = 90\nmin = -100\nmax = 100\n[[link]]\nalpha = -90\nd = 56\nmin = -170\nmax = 170\n"
-        "[tool]\nxyz = [60, 40, 80]\n",
-        "offset elbow");
+  std::string text = "name = \"" + kind + "\"\n";
+  for (const Row& row : rows) {
+    text += "[[link]]\nalpha = " + std::to_string(row.alpha_deg) + "\na = " + std::to_string(row.a_mm) +
+            "\nd = " + std::to_string(row.d_mm) + "\ntheta = 0\nmin = " + std::to_string(row.min) +
+            "\nmax = " + std::to_string(row.max) + (row.slides ? "\njoint = \"prismatic\"\n" : "\n");
   }
-  return family_robot(kind);
+  return parse_robot(text + "[tool]\nxyz = [60, 40, 80]\n", kind);
 }
 
 // The outlier rules on seeds, arms and conditions that no threshold was chosen on.
