@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Runs every command of docs/tutorial.md in order and compares what it prints.
+// Runs every command of docs/tutorial.md in order, and the one of the README, and compares what they print.
 #include <filesystem>
 #include <sstream>
 #include <vector>
@@ -47,6 +47,24 @@ TEST(Tutorial, EveryCommandPrintsWhatThePageSays) {
     const auto run = run_program("bash", {"-c", "exec 2>&1; PATH=\"$PWD/bin:$PATH\"; " + step.command}, options);
     EXPECT_EQ(run.out, step.output) << step.command;
   }
+}
+
+// cmake/demo.sh prints the command, what it prints, and the files.
+TEST(Readme, ShowsWhatTheDemoPrints) {
+  const std::string page = read_bytes(std::string(MDHCAL_SOURCE_DIR) + "/README.md");
+  const std::string program = "$ build/host/bin/mdhcal ";
+  const std::size_t begin = page.find(program);
+  const std::size_t line_end = page.find('\n', begin);
+  const std::size_t files = page.find("Wrote:\n", line_end);
+  ASSERT_LT(files, page.size());
+  const std::string arguments = page.substr(begin + program.size(), line_end - begin - program.size());
+  const TemporaryFolder folder;
+  fs::create_directory_symlink(std::string(MDHCAL_SOURCE_DIR) + "/offline", folder / "offline");
+  fs::create_directory(folder / "build");
+  RunOptions options;
+  options.folder = folder.path();
+  const auto run = run_program("bash", {"-c", "exec 2>&1; " + std::string(MDHCAL_PROGRAM) + " " + arguments}, options);
+  EXPECT_EQ(run.out, page.substr(line_end + 1, files - line_end - 1));
 }
 
 }  // namespace
