@@ -28,7 +28,7 @@ struct Triangle {
   Real entry[max_joints * (max_joints + 1) / 2];   ///< R by rows
   Real b[max_joints];
 
-  Real* row(std::int32_t i) { return entry + i * size - i * (i + 1) / 2; }   ///< row(i)[j] is R_ij, j >= i
+  Real* row(std::int32_t i) { return entry + (i * size - i * (i + 1) / 2); }   ///< row(i)[j] is R_ij, j >= i
 };
 
 /// R = diagonal times the unit matrix.
