@@ -4,6 +4,9 @@
 #include <algorithm>
 #include <numeric>
 
+#include "offline/cli/blob_command.hpp"
+#include "offline/cli/messages.hpp"
+#include "offline/cli/progress.hpp"
 #include "offline/error.hpp"
 #include "offline/identify/setup.hpp"
 #include "offline/robot/rotation.hpp"
@@ -70,6 +73,13 @@ Vector3 predicted(const Arm<double>& arm, const Registration& r, const Dataset& 
     throw InputError(data.path, row.line, 0, "A joint is outside the library's range.");
   }
   return transform(compose(r.tracker_T_base, frame_of(pose)), r.flange_p_m[row.target]);
+}
+
+Dataset read_measurements(const std::string& path, const Robot& robot) {
+  Progress progress("read", verbosity() != Verbosity::quiet);
+  Dataset data = read_dataset(path, robot, progress.callback());
+  inform_all(data.notes);
+  return data;
 }
 
 }  // namespace mdhcal::offline

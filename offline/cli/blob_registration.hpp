@@ -22,4 +22,7 @@ Registration registration(const Robot& robot, const Dataset& data, bool refit_ba
 /// Predicted position of a row's target through lib, tracker frame [m]. Throws InputError for joints out of range.
 Vector3 predicted(const Arm<double>& arm, const Registration& registration, const Dataset& data, const Measurement& row);
 
+/// Reads measurements of the blob's robot, with progress on a terminal, and says what the reader noted.
+Dataset read_measurements(const std::string& path, const Robot& robot);
+
 }  // namespace mdhcal::offline

@@ -10,7 +10,6 @@
 #include "offline/cli/blob_registration.hpp"
 #include "offline/cli/commands.hpp"
 #include "offline/cli/messages.hpp"
-#include "offline/cli/progress.hpp"
 #include "offline/error.hpp"
 #include "offline/output/blob_file.hpp"
 
@@ -29,11 +28,7 @@ struct Arguments {
 void run(const Arguments& arguments) {
   const BlobArm blob = read_blob_arm(arguments.blob, PoseOptions{});
   const Robot robot = robot_of(blob.model, arguments.blob);
-  const Dataset data = [&] {
-    Progress progress("read", verbosity() != Verbosity::quiet);
-    return read_dataset(arguments.measurements, robot, progress.callback());
-  }();
-  inform_all(data.notes);
+  const Dataset data = read_measurements(arguments.measurements, robot);
   const BlobProvenance& provenance = blob.model.provenance;
   if (!arguments.expected_mean_mm && provenance.has_held_out == 0) {
     throw InputError(arguments.blob, 0, 0,

@@ -13,7 +13,6 @@
 #include "offline/cli/blob_registration.hpp"
 #include "offline/cli/commands.hpp"
 #include "offline/cli/messages.hpp"
-#include "offline/cli/progress.hpp"
 #include "offline/error.hpp"
 #include "offline/output/blob_file.hpp"
 
@@ -54,11 +53,7 @@ void print_line(const std::string& name, const Statistics& s) {
 void run(const Arguments& arguments) {
   const BlobArm blob = read_blob_arm(arguments.blob, PoseOptions{});
   const Robot robot = robot_of(blob.model, arguments.blob);
-  const Dataset data = [&] {
-    Progress progress("read", verbosity() != Verbosity::quiet);
-    return read_dataset(arguments.measurements, robot, progress.callback());
-  }();
-  inform_all(data.notes);
+  const Dataset data = read_measurements(arguments.measurements, robot);
   if (!robot.tracker_T_base && !arguments.refit_base) {
     detail("The blob has no base frame: the measurements are taken to be in the robot's base frame.");
   }
