@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "offline/identify/covariance.hpp"
 
-#include <Eigen/QR>
-
 #include <algorithm>
 #include <cmath>
 
+#include "offline/identify/factorization.hpp"
 #include "offline/identify/lambda_rules.hpp"
 
 namespace mdhcal::offline {
@@ -95,10 +94,8 @@ Covariance covariance_of(const Dataset& data, const Selection& selection, const 
   Eigen::MatrixXd all = Eigen::MatrixXd::Zero(frames + n, frames + n);
   all.bottomRightCorner(n, n) = geometry;
   if (frames > 0) {
-    Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> solver;
-    solver.setThreshold(jacobian_tolerance);
-    solver.compute(system.frame);
-    const Eigen::MatrixXd spread = solver.solve(Eigen::MatrixXd::Identity(frames, frames));
+    const Eigen::MatrixXd spread =
+        least_squares(system.frame, Eigen::MatrixXd::Identity(frames, frames), jacobian_tolerance).x;
     const Eigen::MatrixXd follow = -spread * system.frame_by_geometry;
     all.topLeftCorner(frames, frames) =
         noise.variance * spread * spread.transpose() + follow * geometry * follow.transpose();

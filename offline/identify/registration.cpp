@@ -2,14 +2,13 @@
 #include "offline/identify/registration.hpp"
 
 #include <Eigen/LU>
-#include <Eigen/QR>
-#include <Eigen/SVD>
 
 #include <algorithm>
 #include <cmath>
 #include <map>
 
 #include "mdhcal/kinematics.hpp"
+#include "offline/identify/factorization.hpp"
 #include "offline/identify/rigid.hpp"
 
 namespace mdhcal::offline {
@@ -18,6 +17,8 @@ namespace {
 
 // Starting values need no more rows than this; a longer file is thinned evenly.
 constexpr std::size_t enough_rows = 2000;
+// Columns are direction cosines and metres: a direction below a millionth of the largest is noise of the measurements.
+constexpr double start_tolerance = 1e-6;
 
 struct Sight {
   Frame<double> base_T_flange;
@@ -41,21 +42,21 @@ std::vector<Sight> sights(const Dataset& data, const std::vector<std::size_t>& r
   return out;
 }
 
-Eigen::VectorXd least_squares(const Eigen::MatrixXd& a, const Eigen::VectorXd& b, Eigen::Index& rank) {
-  Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> solver;
-  solver.setThreshold(1e-6);
-  solver.compute(a);
-  rank = solver.rank();
-  return solver.solve(b);
-}
+struct NearestRotation {
+  Eigen::Matrix3d rotation;
+  Eigen::Vector3d s;      // the matrix's singular values: 1, 1, 1 for a rotation
+  bool mirrored = false;  // the nearest orthogonal matrix is a reflection
+};
 
-// The rotation nearest to a matrix; false if the matrix is far from any.
-bool nearest_rotation(const Eigen::Matrix3d& matrix, Eigen::Matrix3d& rotation) {
-  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(matrix, Eigen::ComputeFullU | Eigen::ComputeFullV);
+NearestRotation nearest_rotation(const Eigen::Matrix3d& matrix) {
+  const SingularVectors svd = full_svd(matrix);
+  NearestRotation out;
+  out.s = svd.s;
   Eigen::Matrix3d guard = Eigen::Matrix3d::Identity();
-  guard(2, 2) = (svd.matrixU() * svd.matrixV().transpose()).determinant() < 0.0 ? -1.0 : 1.0;
-  rotation = svd.matrixU() * guard * svd.matrixV().transpose();
-  return guard(2, 2) > 0.0 && svd.singularValues()(2) > 0.2 && svd.singularValues()(0) < 5.0;
+  out.mirrored = Eigen::Matrix3d(svd.u * svd.v.transpose()).determinant() < 0.0;
+  if (out.mirrored) guard(2, 2) = -1.0;
+  out.rotation = svd.u * guard * svd.v.transpose();
+  return out;
 }
 
 void store(const Eigen::Matrix3d& rotation, double* out) {
@@ -86,8 +87,7 @@ void refit_translations(const std::vector<Sight>& sight, const Layout& layout, E
       }
     }
   }
-  Eigen::Index rank = 0;
-  const Eigen::VectorXd x = least_squares(a, b, rank);
+  const Eigen::VectorXd x = least_squares(a, b, start_tolerance).x;
   for (std::size_t k = 0; k < 3 && layout.base; ++k) {
     estimate.tracker_T_base.position_m[k] += x(static_cast<Eigen::Index>(k));
   }
@@ -121,15 +121,16 @@ bool joint_linear_start(const std::vector<Sight>& sight, const Layout& layout, E
       }
     }
   }
-  Eigen::Index rank = 0;
-  const Eigen::VectorXd x = least_squares(a, b, rank);
-  if (rank < columns) return false;
+  const LeastSquares solved = least_squares(a, b, start_tolerance);
+  if (solved.rank < columns) return false;
+  const Eigen::VectorXd x = solved.x;
   Eigen::Matrix3d base_R_tracker;
   for (int k = 0; k < 3; ++k) {
     for (int c = 0; c < 3; ++c) base_R_tracker(k, c) = x(3 * k + c);
   }
-  Eigen::Matrix3d rotation;
-  if (!nearest_rotation(base_R_tracker, rotation)) return false;
+  const NearestRotation nearest = nearest_rotation(base_R_tracker);
+  if (nearest.mirrored || !(nearest.s(2) > 0.2) || !(nearest.s(0) < 5.0)) return false;
+  const Eigen::Matrix3d& rotation = nearest.rotation;
   const Eigen::Vector3d t = rotation.transpose() * x.segment<3>(9);
   store(rotation.transpose(), estimate.tracker_T_base.rotation);
   for (int k = 0; k < 3; ++k) estimate.tracker_T_base.position_m[k] = t(k) + centre[static_cast<std::size_t>(k)];
@@ -162,8 +163,7 @@ bool target_from_spans(const std::vector<Span>& spans, Vector3& flange_p_m) {
     }
     b(r) = s.length_m * s.length_m - dot(s.origins_m, s.origins_m);
   }
-  Eigen::Index rank = 0;
-  const Eigen::VectorXd x = least_squares(a, b, rank);
+  const Eigen::VectorXd x = least_squares(a, b, start_tolerance).x;
   for (std::size_t k = 0; k < 3; ++k) {
     flange_p_m[k] = x(static_cast<Eigen::Index>(k));
     if (!(std::fabs(flange_p_m[k]) < 10.0)) return false;
@@ -258,9 +258,9 @@ bool fixed_end_start(const Dataset& data, const std::vector<std::size_t>& rows, 
       a(i, 3) = 1.0;
       b(i) = length * length - dot(p, p);
     }
-    Eigen::Index rank = 0;
-    const Eigen::VectorXd g = least_squares(a, b, rank);
-    if (rank < 4) continue;
+    const LeastSquares solved = least_squares(a, b, start_tolerance);
+    if (solved.rank < 4) continue;
+    const Eigen::VectorXd g = solved.x;
     in_base.push_back({g(0), g(1), g(2)});
     in_tracker.push_back(fixed_m);
   }
@@ -292,10 +292,7 @@ Frame<double> rigid_fit(const std::vector<Vector3>& a, const std::vector<Vector3
     const double w = weight.empty() ? 1.0 : weight[i];
     covariance += w * (vector(b[i]) - mean_b) * (vector(a[i]) - mean_a).transpose();
   }
-  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(covariance, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  Eigen::Matrix3d guard = Eigen::Matrix3d::Identity();
-  guard(2, 2) = (svd.matrixU() * svd.matrixV().transpose()).determinant() < 0.0 ? -1.0 : 1.0;
-  const Eigen::Matrix3d rotation = svd.matrixU() * guard * svd.matrixV().transpose();
+  const Eigen::Matrix3d rotation = nearest_rotation(covariance).rotation;
   const Eigen::Vector3d t = mean_b - rotation * mean_a;
   store(rotation, out.rotation);
   for (int k = 0; k < 3; ++k) out.position_m[k] = t(k);

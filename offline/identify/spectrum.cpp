@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include "offline/identify/spectrum.hpp"
 
-#include <Eigen/SVD>
-
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <numeric>
 
+#include "offline/identify/factorization.hpp"
 #include "offline/simulate/random.hpp"
 
 namespace mdhcal::offline {
@@ -82,7 +81,7 @@ Spectrum spectrum_of(const ReducedSystem& system) {
   // Unit columns hide how strongly the poses see anything at all; the mean column length puts that back.
   const Eigen::VectorXd norms = column_norms(system.geometry);
   const double mean_norm = norms.mean();
-  const Eigen::VectorXd s = Eigen::BDCSVD<Eigen::MatrixXd>(scaled).singularValues();
+  const Eigen::VectorXd s = singular_values(scaled);
   double log_product = 0.0;
   double reciprocals = 0.0;
   for (double value : s) {
@@ -124,12 +123,12 @@ Identifiability identifiability(const ReducedSystem& system, const SpectralProbl
 
   const Eigen::VectorXd norms = column_norms(system.geometry);
   const Eigen::MatrixXd scaled = system.geometry * norms.cwiseInverse().asDiagonal();
-  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(scaled, Eigen::ComputeFullV);
-  const Eigen::VectorXd& s = svd.singularValues();
+  const SingularVectors svd = full_svd(scaled);
+  const Eigen::VectorXd& s = svd.s;
   for (Eigen::Index k = n - 1; k >= 0; --k) {
     const double relative = k < s.size() && s(0) > 0.0 ? s(k) / s(0) : 0.0;
     if (relative >= weak_share) break;
-    const Eigen::VectorXd v = svd.matrixV().col(k);
+    const Eigen::VectorXd v = svd.v.col(k);
     WeakDirection weak;
     weak.relative_singular_value = relative > jacobian_tolerance ? relative : 0.0;
     std::vector<Eigen::Index> order(static_cast<std::size_t>(n));

@@ -2,10 +2,11 @@
 #include "offline/identify/tikhonov.hpp"
 
 #include <Eigen/QR>
-#include <Eigen/SVD>
 
 #include <algorithm>
 #include <cmath>
+
+#include "offline/identify/factorization.hpp"
 
 namespace mdhcal::offline {
 
@@ -67,13 +68,12 @@ SpectralProblem spectral_problem(const Eigen::MatrixXd& a, const Eigen::VectorXd
   }
   // Rank is judged with unit columns, so that the choice of units and priors has no part in it.
   const Eigen::MatrixXd scaled = a * column_norms(a).cwiseInverse().asDiagonal();
-  const Eigen::BDCSVD<Eigen::MatrixXd> judge(scaled);
-  const Eigen::Index rank = rank_of(judge.singularValues(), rank_tolerance);
+  const Eigen::Index rank = rank_of(singular_values(scaled), rank_tolerance);
 
-  const Eigen::BDCSVD<Eigen::MatrixXd> svd(a, Eigen::ComputeThinU | Eigen::ComputeThinV);
-  out.s = svd.singularValues().head(rank);
-  out.v = svd.matrixV().leftCols(rank);
-  out.beta = svd.matrixU().leftCols(rank).transpose() * b;
+  const SingularVectors svd = thin_svd(a);
+  out.s = svd.s.head(rank);
+  out.v = svd.v.leftCols(rank);
+  out.beta = svd.u.leftCols(rank).transpose() * b;
   out.outside2 = std::max(0.0, b2 - out.beta.squaredNorm());
   return out;
 }
@@ -96,12 +96,12 @@ ReducedSystem reduce_frames(const Eigen::MatrixXd& matrix, std::size_t frame_col
   out.largest_column = matrix.topLeftCorner(n, n).colwise().norm().maxCoeff();
   const Eigen::VectorXd norms = column_norms(out.frame, out.largest_column);
   const Eigen::MatrixXd scaled = out.frame * norms.cwiseInverse().asDiagonal();
-  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(scaled, Eigen::ComputeFullU);
-  out.frame_rank = rank_of(svd.singularValues(), jacobian_tolerance);
+  const SingularVectors svd = full_svd(scaled);
+  out.frame_rank = rank_of(svd.s, jacobian_tolerance);
   const Eigen::Index lost = frames - out.frame_rank;
   if (lost == 0) return out;
-  const Eigen::MatrixXd turned = svd.matrixU().transpose() * out.frame_by_geometry;
-  const Eigen::VectorXd turned_residual = svd.matrixU().transpose() * out.frame_residual;
+  const Eigen::MatrixXd turned = svd.u.transpose() * out.frame_by_geometry;
+  const Eigen::VectorXd turned_residual = svd.u.transpose() * out.frame_residual;
   Eigen::MatrixXd geometry(parameters + lost, parameters);
   geometry << out.geometry, turned.bottomRows(lost);
   Eigen::VectorXd residual(parameters + lost);
@@ -125,10 +125,7 @@ Eigen::VectorXd frame_step(const ReducedSystem& system, const Eigen::VectorXd& g
   const Eigen::VectorXd target = -(system.frame_residual + system.frame_by_geometry * geometry_step);
   const Eigen::VectorXd norms = column_norms(system.frame, system.largest_column);
   const Eigen::MatrixXd scaled = system.frame * norms.cwiseInverse().asDiagonal();
-  Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> solver;
-  solver.setThreshold(jacobian_tolerance);
-  solver.compute(scaled);
-  return norms.cwiseInverse().asDiagonal() * Eigen::VectorXd(solver.solve(target));
+  return norms.cwiseInverse().asDiagonal() * least_squares(scaled, target, jacobian_tolerance).x;
 }
 
 Eigen::VectorXd damped_step(const Eigen::MatrixXd& matrix, std::size_t frame_columns, const Eigen::VectorXd& x0,

@@ -8,7 +8,8 @@
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
 #include <Eigen/QR>
-#include <Eigen/SVD>
+
+#include "offline/identify/factorization.hpp"
 
 namespace mdhcal::offline {
 
@@ -67,7 +68,7 @@ VectorXd gains(const Experiment& experiment, Criterion criterion, const MatrixXd
 }
 
 double smallest_eigenvalue(const MatrixXd& factor) {
-  const double s = Eigen::BDCSVD<MatrixXd>(factor).singularValues()[factor.cols() - 1];
+  const double s = singular_values(factor)[factor.cols() - 1];
   return s * s;
 }
 
@@ -86,10 +87,10 @@ std::pair<std::size_t, double> best_addition(const Experiment& experiment, Crite
     }
     return {best, best_value};
   }
-  const Eigen::BDCSVD<MatrixXd> svd(factor, Eigen::ComputeFullV);
+  const SingularVectors svd = thin_svd(factor);
   const Index weak = std::min<Index>(3, factor.cols());
-  const VectorXd s = svd.singularValues().tail(weak);
-  const MatrixXd along = experiment.rows * svd.matrixV().rightCols(weak) * s.cwiseInverse().asDiagonal();
+  const VectorXd s = svd.s.tail(weak);
+  const MatrixXd along = experiment.rows * svd.v.rightCols(weak) * s.cwiseInverse().asDiagonal();
   std::vector<std::size_t> order;
   for (std::size_t c = 0; c < taken.size(); ++c) {
     if (!taken[c]) order.push_back(c);

@@ -111,14 +111,14 @@ inline Geometry with_errors(Geometry g, Random& random, double length_m, double 
   return g;
 }
 
-/// Whether this is a microcontroller under emulation, where tests are thinned.
-#if defined(__arm__) || defined(__thumb__)
+/// Whether this runs under emulation, where tests are thinned.
+#ifdef MDHCAL_EMULATED
 inline constexpr bool emulated = true;
 #else
 inline constexpr bool emulated = false;
 #endif
 
-/// How many of `full` cases to run: all on a host, a fiftieth under emulation of a microcontroller.
+/// How many of `full` cases to run: all on a host, a fiftieth under emulation.
 constexpr int cases(int full) {
   if (!emulated) return full;
   return full / 50 > 0 ? full / 50 : 1;

@@ -7,12 +7,6 @@ namespace {
 using namespace mdhcal;
 using namespace mdhcal::test;
 
-#if defined(__arm__) || defined(__thumb__)
-constexpr bool slow = true;
-#else
-constexpr bool slow = false;
-#endif
-
 // The position is held to what the tick's tolerance and rounding leave; no joint is faster than its limit; the
 // orientation is lost by no more than twice the angle between the two arms' flanges at the same joints on the path.
 template <class Real>
@@ -21,7 +15,7 @@ void crosses(bool parallel, double errors_mm, double position_m, std::uint64_t s
   const Geometry geometry = parallel ? ur5() : wrist_arm();
   Arm<double> nominal{};
   ASSERT_EQ(make_arm(geometry, nominal), Status::ok);
-  const int arms = slow ? 1 : 3;
+  const int arms = emulated ? 1 : 3;
   for (int n = 0; n < arms; ++n) {
     const Geometry corrected = with_errors(geometry, random, errors_mm * 1e-3, errors_mm * 0.1 * deg);
     Arm<double> exact{};
@@ -29,11 +23,11 @@ void crosses(bool parallel, double errors_mm, double position_m, std::uint64_t s
     ASSERT_EQ(make_arm(corrected, exact), Status::ok);
     ASSERT_EQ(make_arm(corrected, arm), Status::ok);
     // Under emulation five times as fast: fewer ticks.
-    const Crossing found = cross_wrist<Real>(nominal, exact, arm, parallel, random, slow ? 0.002 : 0.0004);
+    const Crossing found = cross_wrist<Real>(nominal, exact, arm, parallel, random, emulated ? 0.002 : 0.0004);
     ASSERT_LT(found.turned_rad, 1e-9);
     EXPECT_LT(found.position_m, position_m) << n;
     EXPECT_LE(found.step, servo_step) << n;
-    EXPECT_LE(found.rotation_rad, (slow ? 3.0 : 2.0) * found.own_rad) << n;
+    EXPECT_LE(found.rotation_rad, (emulated ? 3.0 : 2.0) * found.own_rad) << n;
     EXPECT_TRUE(found.met) << n;
   }
 }
@@ -56,22 +50,22 @@ TEST(TickPath, CrossesTheWristInFloat) { crosses<float>(true, 1.0, 2e-5, 37); }
 TEST(TickPath, ComesBackFromOutOfReachOnTheSameJoints) {
   Random random(41);
   int unique = 0;
-  for (int n = 0; n < (slow ? 2 : 8); ++n) {
+  for (int n = 0; n < (emulated ? 2 : 8); ++n) {
     const bool parallel = n % 2 == 0;
     Arm<double> arm{};
     ASSERT_EQ(make_arm(with_errors(parallel ? ur5() : wrist_arm(), random, 1e-3, 0.1 * deg), arm), Status::ok);
     double q[6];
     random_posture(arm, random, q);
     const double limit = n % 4 < 2 ? servo_step : 1.0;
-    const Excursion found = there_and_back(arm, q, parallel ? 1.5 : 2.0, slow ? 0.004 : 0.0005, slow ? 1.0 : limit);
-    EXPECT_GT(found.unreachable, slow ? 10 : 100) << n;
+    const Excursion found = there_and_back(arm, q, parallel ? 1.5 : 2.0, emulated ? 0.004 : 0.0005, emulated ? 1.0 : limit);
+    EXPECT_GT(found.unreachable, emulated ? 10 : 100) << n;
     // A regular tick evaluates the arm three times.
     EXPECT_LE(found.evaluations, 24 * found.unreachable) << n;
     if (!found.unique) continue;
     ++unique;
     EXPECT_LT(found.away_rad, 0.05) << n;
   }
-  EXPECT_GE(unique, slow ? 1 : 4);
+  EXPECT_GE(unique, emulated ? 1 : 4);
 }
 
 enum class Near { wrist, elbow, both };
