@@ -10,6 +10,7 @@ if(CMAKE_SYSTEM_NAME STREQUAL "Generic")
 endif()
 FetchContent_Declare(googletest GIT_REPOSITORY https://github.com/google/googletest.git GIT_TAG v1.13.0 GIT_SHALLOW ON)
 FetchContent_MakeAvailable(googletest)
+target_compile_options(gtest PRIVATE -O1)  # more to compile than to run
 if(NOT TARGET GTest::gtest_main)
   add_library(GTest::gtest_main ALIAS gtest_main)
 endif()

@@ -22,54 +22,62 @@ struct BoxProblem {
 
 inline bool has(std::uint32_t mask, std::int32_t j) { return ((mask >> static_cast<std::uint32_t>(j)) & 1U) != 0U; }
 
-/// An upper triangular system R x = b, kept triangular while equations are added one at a time.
-struct Triangle {
-  std::int32_t size;
-  Real entry[max_joints * (max_joints + 1) / 2];   ///< R by rows
+/// The least-squares problem of damping x = right over A x = b, and in its place the triangle R that factor() makes of it.
+struct Stack {
+  std::int32_t size;        ///< unknowns
+  std::int32_t equations;   ///< of A, at most max_joints
+  Real column[max_joints][max_joints];   ///< of A; then [i][j - 1] is R_ij, j > i
   Real b[max_joints];
-
-  Real* row(std::int32_t i) { return entry + (i * size - i * (i + 1) / 2); }   ///< row(i)[j] is R_ij, j >= i
+  Real diagonal[max_joints];             ///< of R
+  Real right[max_joints];                ///< in the end R x = right
 };
 
-/// R = diagonal times the unit matrix.
-inline void start(Triangle& triangle, std::int32_t size, Real diagonal) {
-  triangle.size = size;
-  for (std::int32_t i = 0; i < size; ++i) {
-    Real* row = triangle.row(i);
-    row[i] = diagonal;
-    for (std::int32_t j = i + 1; j < size; ++j) row[j] = 0;
-    triangle.b[i] = 0;
-  }
-}
-
-/// Adds the equation r . x = b by Givens rotations (Golub, Van Loan 2013, 5.1.8 and 6.5.2). r is overwritten.
-inline void add_equation(Triangle& triangle, Real* r, Real b) {
-  for (std::int32_t k = 0; k < triangle.size; ++k) {
-    if (!(magnitude(r[k]) > Real{0})) continue;
-    Real* row = triangle.row(k);
-    // Of squares that vanish in rounding nothing is to be rotated either.
-    const Real norm = square_root(row[k] * row[k] + r[k] * r[k]);
-    if (!(norm > Real{0})) continue;
-    const Real cosine = row[k] / norm;
-    const Real sine = r[k] / norm;
-    row[k] = norm;
-    for (std::int32_t j = k + 1; j < triangle.size; ++j) {
-      const Real x = row[j];
-      row[j] = cosine * x + sine * r[j];
-      r[j] = cosine * r[j] - sine * x;
+/// Reflection i takes column i of A into row i of the damping, which is zero right of its diagonal (Householder 1958).
+inline void factor(Stack& stack, Real damping) {
+  const std::int32_t equations = stack.equations;
+  for (std::int32_t i = 0; i < stack.size; ++i) {
+    Real v[max_joints];
+    Real square = damping * damping;
+    for (std::int32_t k = 0; k < equations; ++k) {
+      v[k] = stack.column[i][k];
+      square += v[k] * v[k];
     }
-    const Real x = triangle.b[k];
-    triangle.b[k] = cosine * x + sine * b;
-    b = cosine * b - sine * x;
+    const Real norm = square_root(square);
+    const Real head = damping + norm;
+    const Real scale = Real{1} / (norm * head);
+    stack.diagonal[i] = -norm;
+    for (std::int32_t j = i + 1; j < stack.size; ++j) {
+      Real* to = stack.column[j];
+      Real sum = 0;
+      for (std::int32_t k = 0; k < equations; ++k) sum += v[k] * to[k];
+      sum *= scale;
+      for (std::int32_t k = 0; k < equations; ++k) to[k] -= sum * v[k];
+      stack.column[i][j - 1] = -sum * head;
+    }
+    Real sum = head * stack.right[i];
+    for (std::int32_t k = 0; k < equations; ++k) sum += v[k] * stack.b[k];
+    sum *= scale;
+    for (std::int32_t k = 0; k < equations; ++k) stack.b[k] -= sum * v[k];
+    stack.right[i] -= sum * head;
   }
 }
 
-inline void solve_upper(Triangle& triangle, const Real* b, Real* x) {
-  for (std::int32_t i = triangle.size - 1; i >= 0; --i) {
-    const Real* row = triangle.row(i);
+/// R x = b; x may be b.
+inline void solve_upper(const Stack& stack, const Real* b, Real* x) {
+  for (std::int32_t i = stack.size - 1; i >= 0; --i) {
+    const Real* row = stack.column[i];
     Real sum = b[i];
-    for (std::int32_t j = i + 1; j < triangle.size; ++j) sum -= row[j] * x[j];
-    x[i] = sum / row[i];
+    for (std::int32_t j = i + 1; j < stack.size; ++j) sum -= row[j - 1] * x[j];
+    x[i] = sum / stack.diagonal[i];
+  }
+}
+
+/// R^T x = b; x may be b.
+inline void solve_lower(const Stack& stack, const Real* b, Real* x) {
+  for (std::int32_t i = 0; i < stack.size; ++i) {
+    Real sum = b[i];
+    for (std::int32_t j = 0; j < i; ++j) sum -= stack.column[j][i - 1] * x[j];
+    x[i] = sum / stack.diagonal[i];
   }
 }
 
@@ -80,31 +88,30 @@ inline Real residual(const BoxProblem& problem, std::int32_t i, const Real* x) {
   return left;
 }
 
+/// Minus half the slope of |b - A x|^2 by x_j at 0.
+inline Real slope_of(const BoxProblem& problem, std::int32_t j) {
+  Real sum = 0;
+  for (std::int32_t i = 0; i < problem.rows; ++i) sum += problem.row[i][j] * problem.b[i];
+  return sum;
+}
+
 /// The minimum over the unknowns in `free_mask`, the others at x; into `z`, in the order of the free ones.
 [[gnu::noinline]] void solve_free(const BoxProblem& problem, std::uint32_t free_mask, const Real* x, Real* z) {
-  Triangle triangle;
+  Stack stack;
+  stack.equations = problem.rows;
+  for (std::int32_t i = 0; i < problem.rows; ++i) stack.b[i] = problem.b[i];
   std::int32_t size = 0;
-  for (std::int32_t j = 0; j < problem.columns; ++j) size += has(free_mask, j) ? 1 : 0;
-  // The damping's equations are triangular as they stand.
-  start(triangle, size, problem.damping);
-  std::int32_t k = 0;
   for (std::int32_t j = 0; j < problem.columns; ++j) {
-    if (has(free_mask, j)) triangle.b[k++] = problem.damping * problem.pull[j];
-  }
-  for (std::int32_t i = 0; i < problem.rows; ++i) {
-    Real r[max_joints];
-    Real b = problem.b[i];
-    k = 0;
-    for (std::int32_t j = 0; j < problem.columns; ++j) {
-      if (has(free_mask, j)) {
-        r[k++] = problem.row[i][j];
-      } else {
-        b -= problem.row[i][j] * x[j];
-      }
+    if (has(free_mask, j)) {
+      for (std::int32_t i = 0; i < problem.rows; ++i) stack.column[size][i] = problem.row[i][j];
+      stack.right[size++] = problem.damping * problem.pull[j];
+    } else {
+      for (std::int32_t i = 0; i < problem.rows; ++i) stack.b[i] -= problem.row[i][j] * x[j];
     }
-    add_equation(triangle, r, b);
   }
-  solve_upper(triangle, triangle.b, z);
+  stack.size = size;
+  factor(stack, problem.damping);
+  solve_upper(stack, stack.right, z);
 }
 
 /// Goes from x towards z (the free unknowns' values) as far as the bounds let it. Returns the unknown that met a bound

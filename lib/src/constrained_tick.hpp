@@ -14,6 +14,12 @@ constexpr Real least_damping = sizeof(Real) == sizeof(double) ? Real(1e-8) : Rea
 /// The damping of the first step over the root of the error.
 constexpr Real care = Real(0.1);
 constexpr Real near_singular_below = Real(0.01);
+/// What the linear model has to promise of the error's square: all but half where a pose is to be met, little where the
+/// best is to be made of it.
+constexpr Real half = Real(0.5);
+constexpr Real little = Real(1e-5);
+/// And after the first step: what comes as slowly as that can wait for the next tick.
+constexpr Real creeping = Real(0.003);
 
 /// A minimisation's joints, and the linear model there.
 struct Search {
@@ -33,19 +39,23 @@ struct Look {
   PoseError error;
 };
 
-/// The singular value that a minimisation may not take below `least`, linearised at the last joints.
-struct Keep {
+/// The weakest singular direction at some joints and what it does.
+struct Bend {
   Weakest weakest;
-  Real slope[max_joints];
-  Real least;
+  Real slope[max_joints];   ///< of the singular value, by the unit-free readings
+  Real along;               ///< the slope along the direction
+  Real wanted;              ///< the error's component that the direction answers
+  Real fold;                ///< 1 on a straight elbow: the direction shifts the flange and bends; 0 on a wrist; else between
+  Real least;               ///< a minimisation with it may not take the singular value below this
 };
 
 /// How a minimisation goes about it.
 struct Aim {
   Real damping;           ///< of a step, the weight of the joints' motion; times the error's root if `by_error`
   bool by_error;
-  const Keep* keep;       ///< or null
+  const Bend* keep;       ///< or null
   bool posture;           ///< the first step goes to the posture as well
+  Real promise;           ///< the least part of the cost that the linear model has to take away for a step to be tried
   std::int32_t patience;  ///< iterations that fail or gain little
   std::int32_t most;      ///< evaluations of the arm
 };
@@ -73,13 +83,20 @@ inline void settle(Search& search, const Real* q, const Look& look) {
   linearise(state, look.frame, look.coordinates, search.rotation_weight, problem);
 }
 
+/// Gives the rotation another weight, once, in the model as it stands.
+inline void weigh_rotation(Search& search, Real weight) {
+  BoxProblem& problem = search.problem;
+  search.rotation_weight = weight;
+  for (std::int32_t i = first_turn(search.state->options->task); i < problem.rows; ++i) {
+    for (std::int32_t j = 0; j < problem.columns; ++j) problem.row[i][j] *= weight;
+    problem.b[i] *= weight;
+  }
+  search.cost = square(problem.b, problem.rows);
+}
+
 /// Starts a search with all errors alike at q.
 [[gnu::noinline]] void start(Search& search, TickState& state, const Real* q) {
-  search.state = &state;
-  search.problem.rows = task_rank(state.options->task);
-  search.problem.columns = state.arm->joint_count;
   search.rotation_weight = 1;
-  search.met = false;
   Look look;
   look_at(state, q, look);
   settle(search, q, look);
@@ -109,7 +126,7 @@ inline void set_room(Search& search) {
 
 /// Solves for a step; where it takes the kept singular value below its least, once more with the equation that it ends
 /// there.
-[[gnu::noinline]] void solve_kept(Search& search, const Keep* keep, Real* step) {
+[[gnu::noinline]] void solve_kept(Search& search, const Bend* keep, Real* step) {
   // Against rows of one and less: the equation is met to a thousandth.
   constexpr Real weight = 30;
   BoxProblem& problem = search.problem;
@@ -130,44 +147,89 @@ inline void set_room(Search& search) {
   --problem.rows;
 }
 
-/// Raises the damping, to within a factor of two of the least, until the step fits between the step limits: unlike one
-/// that is cut off at them, it keeps to the directions that the joints are good at. Returns whether it had to.
+/// What the step limits leave of joint j's way in one direction, or 0 if the arm's limit ends it: a joint that has used
+/// up its step holds nobody else back.
+inline Real step_room(const TickState& state, std::int32_t j, bool up) {
+  if (limit_ends(state, j, up)) return 0;
+  const Real room = (up ? state.high[j] - state.q[j] : state.q[j] - state.low[j]) / joint_unit(state, j);
+  return room > Real(1e-9) ? room : Real{0};
+}
+
+/// Raises the damping, to little more than the least, until the step fits between the step limits: unlike one that is cut
+/// off at them, it keeps to the directions that the joints are good at. Returns whether it had to.
 [[gnu::noinline]] bool fit_damping(Search& search) {
   const TickState& state = *search.state;
+  BoxProblem& problem = search.problem;
+  // Far from the pose the damping rules, and a step is the slope over its square. Never more than is needed: no
+  // singular value squared is over 4.
+  Real steepest = 0;
+  for (std::int32_t j = 0; j < problem.columns; ++j) {
+    const Real slope = slope_of(problem, j);
+    const Real room = step_room(state, j, slope > Real{0});
+    if (room > Real{0} && magnitude(slope) > steepest * room) steepest = magnitude(slope) / room;
+  }
   bool raised = false;
+  if (steepest > Real{4} + problem.damping * problem.damping) {
+    problem.damping = square_root(steepest - Real{4});
+    raised = true;
+  }
   for (int round = 0; round < 8; ++round) {
     Real step[max_joints] = {};
-    solve_free(search.problem, all_joints(search), step, step);
+    solve_free(problem, all_joints(search), step, step);
     Real worst = 0;
-    for (std::int32_t j = 0; j < search.problem.columns; ++j) {
-      const bool up = step[j] > Real{0};
-      if (limit_ends(state, j, up)) continue;
-      const Real room = (up ? state.high[j] - state.q[j] : state.q[j] - state.low[j]) / joint_unit(state, j);
-      // A joint that has used up its step holds nobody else back.
-      if (room > Real(1e-9) && magnitude(step[j]) > worst * room) worst = magnitude(step[j]) / room;
+    for (std::int32_t j = 0; j < problem.columns; ++j) {
+      const Real room = step_room(state, j, step[j] > Real{0});
+      if (room > Real{0} && magnitude(step[j]) > worst * room) worst = magnitude(step[j]) / room;
     }
     if (!(worst > Real{1})) break;
     raised = true;
-    const Real factor = square_root(worst);
-    search.problem.damping *= factor > Real{2} ? factor : Real{2};
+    const Real factor = Real(1.1) * square_root(worst);
+    problem.damping *= factor > Real(1.5) ? factor : Real(1.5);
   }
   return raised;
 }
 
-/// Whether no step within the tick's bounds solves the linear model: a damped solution is no longer than any exact one
-/// (a factor of eight is for the curvature).
-[[gnu::noinline]] bool hopeless(const Search& search) {
+/// Whether the target is further from the base than the arm is long. Slides may be of any length.
+inline bool beyond_reach(const TickState& state) {
+  const Real* p = state.target.position_m;
+  const Real reach = Real(1.0001) * state.arm->reach_m + state.options->position_tolerance_m;
+  return state.arm->prismatic_mask == 0U && dot(p, p) > reach * reach;
+}
+
+/// Whether a tick can meet the pose from its last joints.
+enum class Chance : std::int32_t {
+  some,
+  not_within_a_step,
+  none  ///< nor with any number of steps
+};
+
+/// None: the target is out of all reach; or, close to a fold, the second-order model s t + along t^2 / 2 of what the
+/// weakest direction answers does not come to what is wanted of it, nor with what the other directions' motion may add,
+/// sixteen times its square, nor with the rounding of the direction. Not within a step: no step within the tick's bounds
+/// solves the linear model, since a damped solution is no longer than any exact one (a factor of eight is for the
+/// curvature).
+[[gnu::noinline]] Chance chance(const Search& search, const Bend* bend) {
   const TickState& state = *search.state;
+  if (beyond_reach(state)) return Chance::none;
   Real step[max_joints] = {};
   solve_free(search.problem, all_joints(search), step, step);
   Real room = 0;
+  Real along = 0;
   for (std::int32_t j = 0; j < search.problem.columns; ++j) {
     const Real down = (state.q[j] - state.low[j]) / joint_unit(state, j);
     const Real up = (state.high[j] - state.q[j]) / joint_unit(state, j);
     const Real wider = down > up ? down : up;
     room += wider * wider;
+    if (bend != nullptr) along += bend->weakest.v[j] * step[j];
   }
-  return square(step, search.problem.columns) > Real{64} * room;
+  const Real length2 = square(step, search.problem.columns);
+  if (bend != nullptr && magnitude(bend->along) >= Real(0.05)) {
+    const Real s = bend->weakest.s;
+    constexpr Real rounding = sizeof(Real) == sizeof(double) ? Real(1e-15) : Real(5e-7);
+    const Real slack = Real{16} * (length2 - along * along) + rounding * square_root(search.cost) / s;
+    if (s * s + Real{2} * (bend->along * bend->wanted + magnitude(bend->along) * slack) < Real{0}) return Chance::none;
+  }
+  return length2 > Real{64} * room ? Chance::not_within_a_step : Chance::some;
 }
 
 /// scale |error|^(1/2): far from the target a step is careful, near it Newton's (Yamashita, Fukushima 2001; Sugihara
@@ -189,8 +251,8 @@ inline void set_pull(Search& search, bool posture) {
 }
 
 /// Goes the step if that meets the pose, or brings some of what the linear model `predicted` of the cost, and adapts the
-/// damping and the patience. Returns whether it went.
-[[gnu::noinline]] bool go(Search& search, const Aim& aim, const Real* step, Real predicted, bool anyway) {
+/// damping and the patience; one towards the posture is gone whatever it costs. Returns whether it went.
+[[gnu::noinline]] bool go(Search& search, const Aim& aim, const Real* step, Real predicted, bool posture) {
   TickState& state = *search.state;
   Real q[max_joints];
   for (std::int32_t j = 0; j < search.problem.columns; ++j) {
@@ -204,12 +266,17 @@ inline void set_pull(Search& search, bool posture) {
   to_task(state, look.frame, search.rotation_weight, look.error.vector, b);
   const Real cost = square(b, search.problem.rows);
   const Real ratio = (search.cost - cost) / (search.cost - predicted);
-  const bool goes = search.met || anyway || ratio > Real(0.001);
-  if (!goes || !(cost < (ratio > Real(0.75) ? Real(0.9) : Real(0.25)) * search.cost)) --search.patience;
-  if (!(ratio > Real(0.25))) {
-    search.scale *= Real{10};
-  } else if (ratio > Real(0.75) && aim.by_error) {
-    search.scale *= Real(0.1);
+  const bool goes = search.met || posture || ratio > Real(0.001);
+  // Nearly as predicted, it has to halve the cost; else it has to do more, since Newton's method will not.
+  const Real enough = ratio > Real(0.75) ? Real(0.5) : Real(0.25);
+  if (!posture) {
+    if (!goes || !(cost < enough * search.cost)) --search.patience;
+    if (!(ratio > Real(0.25))) {
+      // A damping that does not go by the error may be far too small.
+      search.scale *= aim.by_error || ratio > Real{-10} ? Real{10} : Real{1000};
+    } else if (ratio > Real(0.75) && aim.by_error) {
+      search.scale *= Real(0.1);
+    }
   }
   if (goes) settle(search, q, look);
   return goes;
@@ -222,6 +289,7 @@ inline void set_pull(Search& search, bool posture) {
   TickState& state = *search.state;
   BoxProblem& problem = search.problem;
   bool posture = aim.posture;
+  Real promise = aim.promise;
   search.scale = aim.damping;
   search.patience = aim.patience;
   search.met = met(state, state.error) && !posture;
@@ -238,9 +306,10 @@ inline void set_pull(Search& search, bool posture) {
       const Real left = residual(problem, i, step);
       predicted += left * left;
     }
-    if (!posture && !(search.cost - predicted > Real(1e-5) * search.cost)) return;
+    if (!posture && !(search.cost - predicted > promise * search.cost)) return;
     if (go(search, aim, step, predicted, posture) && fitted) return;
     posture = false;
+    if (promise < creeping) promise = creeping;
   }
 }
 
@@ -250,8 +319,7 @@ inline void find_pushing(const Search& search) {
   state.step_mask = 0;
   state.limit_mask = 0;
   for (std::int32_t j = 0; j < state.arm->joint_count; ++j) {
-    Real push = 0;
-    for (std::int32_t i = 0; i < search.problem.rows; ++i) push += search.problem.row[i][j] * search.problem.b[i];
+    const Real push = slope_of(search.problem, j);
     const bool up = push > Real{0};
     const Real room = up ? state.high[j] - state.q[j] : state.q[j] - state.low[j];
     if (!(magnitude(push) > Real{0}) || room > Real(1e-6) * (state.high[j] - state.low[j])) continue;
@@ -268,100 +336,156 @@ inline Status classify(const Search& search) {
   return state.evaluations < state.options->max_iterations ? Status::out_of_reach : Status::not_converged;
 }
 
-/// How to make the best of a pose that is not met.
-struct Best {
-  Real weight;     ///< of the rotation
-  bool passes;     ///< the singularity may be passed
-  bool keeps;      ///< the singular value is kept up
-  Real leap;       ///< along the weakest direction, to where the second-order model meets the pose, or 0
-};
+/// 1 below `low`, 0 above `high`, a straight line between.
+inline Real falling(Real x, Real low, Real high) {
+  return x < low ? Real{1} : (x > high ? Real{0} : (high - x) / (high - low));
+}
 
-/// Starts over from the last joints. What the weakest singular direction does decides how to go on. If it turns the
-/// flange, or hardly bends (a wrist's singularity), the singularity may be passed. If it shifts the flange and bends (a
-/// straight elbow), the arm folds there; the singular value is kept from falling below a margin, so that the way back is
-/// the way that it came. The caller's weights hold but close to a fold, where the wrist would bend for nothing.
-[[gnu::noinline]] Best start_over(Search& search, Keep& keep) {
-  constexpr Real turning = Real(0.2);
-  constexpr Real bending = Real(0.05);
-  constexpr Real margin = Real(0.005);
+/// Puts the search at q, all errors alike, and finds what the weakest direction does there.
+[[gnu::noinline]] void look_along(Search& search, const Real* q, Bend& bend) {
   TickState& state = *search.state;
   Look look;
-  look_at(state, state.last, look);
+  look_at(state, q, look);
   search.rotation_weight = 1;
-  settle(search, state.last, look);
-  find_weakest(search.problem, state.options->task, Real{1}, keep.weakest);
-  const Real s = keep.weakest.s;
-  const Real* u = keep.weakest.u;
-  slope_of_weakest(state, look.frame, look.coordinates, keep.weakest, keep.slope);
-  Real bend = 0;
-  for (std::int32_t j = 0; j < search.problem.columns; ++j) bend += keep.slope[j] * keep.weakest.v[j];
-  const bool is_pose = state.options->task == Task::pose;
-  const bool turns = is_pose && (dot(u + 3, u + 3) > turning * turning || magnitude(bend) < bending);
-  Best best{Real{1}, turns && s < Real(0.1), false, Real{0}};
-  // With hardly a singular value left there is no side to keep to.
-  best.keeps = !best.passes && s > Real(1e-6);
-  keep.least = s < margin ? s : margin;
-  // On a fold the error's slope vanishes however far the pose is on either side: bend t^2 / 2 is what there is of it.
-  Real wanted = 0;
-  for (std::int32_t i = 0; i < search.problem.rows; ++i) wanted += u[i] * search.problem.b[i];
-  if (s < Real(0.01) && magnitude(bend) > bending && wanted / bend > Real{0}) {
-    const Real leap = square_root(Real{2} * wanted / bend);
-    if (leap < Real(0.05)) best.leap = wanted > Real{0} ? leap : -leap;
-  }
-  if (is_pose && (turns || s > Real(0.05))) {
-    best.weight = state.options->rotation_weight / state.options->position_weight;
-    search.rotation_weight = best.weight;
-    settle(search, state.last, look);
-  }
-  return best;
+  settle(search, q, look);
+  find_weakest(search.problem, state.options->task, Real{1}, bend.weakest);
+  slope_of_weakest(state, look.frame, look.coordinates, bend.weakest, bend.slope);
+  bend.along = 0;
+  for (std::int32_t j = 0; j < search.problem.columns; ++j) bend.along += bend.slope[j] * bend.weakest.v[j];
+  bend.wanted = 0;
+  for (std::int32_t i = 0; i < search.problem.rows; ++i) bend.wanted += bend.weakest.u[i] * search.problem.b[i];
+  const Real* turn = bend.weakest.u + 3;
+  bend.fold = state.options->task == Task::pose
+                  ? falling(square_root(dot(turn, turn)), Real(0.15), Real(0.25)) *
+                        (Real{1} - falling(magnitude(bend.along), Real(0.04), Real(0.06)))
+                  : Real{1};
 }
 
-/// The best that can be had of a pose that is not met. Where a singularity is passed the weakest direction rests while
-/// its singular value falls, and is caught up while that rises.
-[[gnu::noinline]] void make_the_best(Search& search) {
+/// For a search that rests near a fold without meeting the pose: goes along the weakest direction to where the
+/// second-order model s t + along t^2 / 2 of what it answers meets the pose, to the nearer root, then to the other, and
+/// searches from there.
+[[gnu::noinline]] void leave_fold(Search& search, Bend& bend) {
+  // Further off than this the model is of no use [rad, or lengths of the arm].
+  constexpr Real furthest = Real(0.05);
   TickState& state = *search.state;
-  Keep keep;
-  Best best = start_over(search, keep);
-  if (magnitude(best.leap) > Real{0}) {
-    Real q[max_joints];
+  if (search.cost > furthest * furthest * furthest * furthest) return;
+  look_along(search, state.q, bend);
+  const Real s = bend.weakest.s;
+  Real discriminant = s * s + Real{2} * bend.along * bend.wanted;
+  // A pose on the fold is short of it by rounding; within the tolerances that is no matter.
+  const Real short_by = Real{2} * magnitude(bend.along) * state.options->rotation_tolerance_rad;
+  if (discriminant < Real{0} && discriminant > -short_by) discriminant = 0;
+  if (!(s < near_singular_below) || !(discriminant >= Real{0})) return;
+  Real rest[max_joints];
+  for (std::int32_t j = 0; j < search.problem.columns; ++j) rest[j] = state.q[j];
+  const Real sum = s + square_root(discriminant);
+  for (int root = 0; root < 2 && !search.met; ++root) {
+    const Real leap = root == 0 ? Real{2} * bend.wanted / sum : -sum / bend.along;
+    if (!(magnitude(leap) < furthest)) return;
     for (std::int32_t j = 0; j < search.problem.columns; ++j) {
-      const Real next = state.last[j] + best.leap * keep.weakest.v[j] * joint_unit(state, j);
-      q[j] = next < state.low[j] ? state.low[j] : (next > state.high[j] ? state.high[j] : next);
+      const Real next = rest[j] + leap * bend.weakest.v[j] * joint_unit(state, j);
+      state.q[j] = next < state.low[j] ? state.low[j] : (next > state.high[j] ? state.high[j] : next);
     }
-    start(search, state, q);
-    minimise(search, {care, true, nullptr, false, 6, state.options->max_iterations});
-    if (search.met) return;
-    best = start_over(search, keep);
+    start(search, state, state.q);
+    minimise(search, {care, true, nullptr, false, half, 2, state.options->max_iterations});
   }
-  const Real before = keep.weakest.s;
-  const std::int32_t most = state.options->max_iterations;
-  const bool weighted = best.weight < Real{1};
-  minimise(search, {weighted ? Real{2} * best.weight : care, false, best.keeps ? &keep : nullptr, false,
-                    weighted ? 6 : 2, most});
-  if (search.met || !weighted) return;
-  find_weakest(search.problem, state.options->task, best.weight, keep.weakest);
-  if (keep.weakest.s > before) minimise(search, {Real(0.001) * best.weight, false, nullptr, false, 6, most});
 }
 
-[[gnu::noinline]] Real smallest_singular_value(const Search& search) {
-  Weakest weakest;
-  find_weakest(search.problem, search.state->options->task, search.rotation_weight, weakest);
-  return weakest.s;
+/// Starts over from the last joints, if the search is not `there`. What the weakest singular direction does decides how
+/// to go on. If it turns the flange, or hardly bends (a wrist's singularity), the singularity may be passed. Where the arm
+/// folds the singular value is kept from falling below a margin, so that the way back is the way that it came. The
+/// caller's weights hold but close to a fold, where the wrist would bend for nothing: there errors are alike. Between the
+/// two the weight goes over without a jump, or ticks on either side of one would undo each other for ever. Returns
+/// whether the singular value is to be kept.
+[[gnu::noinline]] bool start_over(Search& search, Bend& bend, bool there) {
+  constexpr Real margin = Real(0.005);
+  const TickState& state = *search.state;
+  if (!there) look_along(search, state.last, bend);
+  const Real s = bend.weakest.s;
+  bend.least = s < margin ? s : margin;
+  if (state.options->task == Task::pose) {
+    const Real callers = state.options->rotation_weight / state.options->position_weight;
+    Real share = bend.fold * falling(s, Real(0.04), Real(0.06));
+    share *= share;
+    weigh_rotation(search, callers + share * share * (Real{1} - callers));
+  }
+  // With hardly a singular value left there is no side to keep to.
+  return (bend.fold > Real(0.5) || s >= Real(0.1)) && s > Real(1e-6);
+}
+
+/// The best that can be had of a pose that is not met, in `most` evaluations. Where a singularity is passed the weakest
+/// direction rests while its singular value falls, and is caught up while that rises. `there`: the search has not left
+/// the last joints, and bend is of them; in the end it is of the result.
+[[gnu::noinline]] void make_the_best(Search& search, Bend& bend, bool there, std::int32_t most) {
+  TickState& state = *search.state;
+  const bool keeps = start_over(search, bend, there);
+  const Real before = bend.weakest.s;
+  const Real weight = search.rotation_weight;
+  const bool weighted = weight < Real(0.05);
+  const std::int32_t patience = weighted ? 6 : 2;
+  minimise(search, {weighted ? Real{2} * weight : care, false, keeps ? &bend : nullptr, false, little, patience, most});
+  find_weakest(search.problem, state.options->task, weight, bend.weakest);
+  if (!search.met && weighted && bend.weakest.s > before) {
+    minimise(search, {Real(0.001) * weight, false, nullptr, false, little, patience, most});
+    find_weakest(search.problem, state.options->task, weight, bend.weakest);
+  }
+}
+
+/// The error's square by the caller's weights.
+inline Real weighed(const TickState& state) {
+  const Real position = state.error.position_m / state.length_m;
+  const Real rotation = state.error.rotation_rad * state.options->rotation_weight / state.options->position_weight;
+  return position * position + rotation * rotation;
+}
+
+/// Whether a joint has gone far from the last ones [rad, or lengths of the arm].
+inline bool far_off(const TickState& state) {
+  constexpr Real far = Real(0.05);
+  for (std::int32_t j = 0; j < state.arm->joint_count; ++j) {
+    if (magnitude(state.q[j] - state.last[j]) > far * joint_unit(state, j)) return true;
+  }
+  return false;
 }
 
 /// The tick where limits, singularities or free joints matter. First the pose is tried with all errors alike; if that
 /// fails, the best is made of it. Returns the tick's status but for joints outside a limit.
 [[gnu::noinline]] Status constrained_tick(TickState& state) {
+  // Nearer to a singularity than this, it is looked at before the pose is tried.
+  constexpr Real near = Real(0.05);
   Search search;
-  start(search, state, state.last);
+  Bend bend;
+  search.state = &state;
+  search.problem.rows = task_rank(state.options->task);
+  search.problem.columns = state.arm->joint_count;
+  search.met = false;
   const bool posture = state.options->posture_gain > Real{0} && search.problem.columns > search.problem.rows;
+  bool there = state.smallest_singular_value < near;
+  if (there) {
+    look_along(search, state.last, bend);
+  } else {
+    start(search, state, state.last);
+  }
+  const Real before = weighed(state);
   search.problem.damping = step_damping(search, care);
   set_pull(search, false);
-  // A quarter of the evaluations is left for what comes after it.
-  const std::int32_t most = (3 * state.options->max_iterations + 3) / 4;
-  if (posture || !hopeless(search)) minimise(search, {care, true, nullptr, posture, 6, most});
-  if (!search.met) make_the_best(search);
-  state.smallest_singular_value = smallest_singular_value(search);
+  std::int32_t most = state.options->max_iterations;
+  const Chance found = posture ? Chance::some : chance(search, there ? &bend : nullptr);
+  if (found == Chance::some) {
+    there = false;
+    // A quarter of the evaluations is left for what comes after it.
+    minimise(search, {care, true, nullptr, posture, half, 2, (3 * most + 3) / 4});
+    if (!search.met) leave_fold(search, bend);
+  }
+  // What cannot be had is not worth more.
+  if (found == Chance::none && state.evaluations + 2 < most) most = state.evaluations + 2;
+  if (search.met) {
+    find_weakest(search.problem, state.options->task, Real{1}, bend.weakest);
+  } else {
+    make_the_best(search, bend, there, most);
+    // A long way for nothing is not gone: the next tick would go it back.
+    if (!search.met && far_off(state) && weighed(state) > before) look_along(search, state.last, bend);
+  }
+  state.smallest_singular_value = bend.weakest.s;
   if (!search.met) find_pushing(search);
   return classify(search);
 }

@@ -110,6 +110,7 @@ Status tick(const Arm<Real>& arm, const TickOptions<Real>& options, const Pose<R
   state.step_mask = 0;
   state.limit_mask = 0;
   Status status = Status::ok;
+  state.smallest_singular_value = 1;  // until something is known of it
   const bool regular = arm.joint_count == 6 && options.task == Task::pose;
   if (!regular || !regular_tick(state)) status = constrained_tick(state);
   for (std::int32_t j = 0; j < arm.joint_count; ++j) q[j] = state.q[j];

@@ -44,7 +44,6 @@ inline bool factor_jacobian(const TickState& state, Jacobian<Real>& jacobian, Fa
   Real q[6];
   for (int j = 0; j < 6; ++j) q[j] = state.q[j];
   Factors factors;
-  Real bound = 0;
   Real last_size = 0;
   Real longest_allowed = regular_step;
   bool fresh = true;
@@ -57,10 +56,10 @@ inline bool factor_jacobian(const TickState& state, Jacobian<Real>& jacobian, Fa
       evaluate(*state.arm, q, frame, jacobian);
       pose_error(state.target, frame, Task::pose, error);
       if (round == 0 || !met(state, error)) {
-        if (!factor_jacobian(state, jacobian, factors)) return false;
+        const bool full_rank = factor_jacobian(state, jacobian, factors);
         // The steps are bounded by what the first one was, so one look is enough.
-        if (round == 0) bound = singular_bound(factors);
-        if (!(bound > regular_bound)) return false;
+        if (round == 0) state.smallest_singular_value = full_rank ? singular_bound(factors) : Real{0};
+        if (!full_rank || !(state.smallest_singular_value > regular_bound)) return false;
       }
     } else {
       evaluate(*state.arm, q, frame);
@@ -69,7 +68,6 @@ inline bool factor_jacobian(const TickState& state, Jacobian<Real>& jacobian, Fa
     if (met(state, error)) {
       for (int j = 0; j < 6; ++j) state.q[j] = q[j];
       state.error = error;
-      state.smallest_singular_value = bound;
       return true;
     }
     const Real length = error.position_m * per_length;

@@ -19,6 +19,9 @@ inline std::int32_t task_rank(Task task) {
   return 6;
 }
 
+/// The first component that is an angle.
+inline std::int32_t first_turn(Task task) { return task == Task::planar ? 2 : 3; }
+
 /// What turns about the base's x and y axes do to the direction, seen from above, of the flange's x axis: that of a
 /// tilted axis turns by w_z - tilt . (w_x, w_y).
 inline void tilt_of_x(const Frame<Real>& frame, Real* tilt) {

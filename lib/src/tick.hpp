@@ -21,7 +21,7 @@ struct TickState {
   const Real* last;                      ///< last joints
   Real q[max_joints];                    ///< in: last joints; out: the result
   PoseError error;                       ///< of the result
-  Real smallest_singular_value;
+  Real smallest_singular_value;          ///< a bound of it at the last joints from below; in the end, of the result
   std::int32_t evaluations;
   std::uint32_t step_mask, limit_mask;   ///< joints that push against a bound
 };

@@ -23,42 +23,37 @@ struct Weakest {
   const std::int32_t columns = problem.columns;
   const bool wide = columns > rows;
   const Real per_weight = Real{1} / rotation_weight;
-  const std::int32_t turn = task == Task::planar ? 2 : 3;
-  Triangle triangle;
-  start(triangle, wide ? rows : columns, floor);
-  const std::int32_t size = triangle.size;
-  for (std::int32_t k = 0; k < (wide ? columns : rows); ++k) {
-    Real r[max_joints];
-    for (std::int32_t i = 0; i < size; ++i) {
-      const std::int32_t row = wide ? i : k;
-      r[i] = problem.row[row][wide ? k : i] * (row < turn ? Real{1} : per_weight);
-    }
-    add_equation(triangle, r, Real{0});
+  const std::int32_t turn = first_turn(task);
+  const auto entry = [&](std::int32_t row, std::int32_t column) {
+    return problem.row[row][column] * (row < turn ? Real{1} : per_weight);
+  };
+  Stack stack;
+  stack.size = wide ? rows : columns;
+  stack.equations = wide ? columns : rows;
+  const std::int32_t size = stack.size;
+  for (std::int32_t i = 0; i < size; ++i) {
+    for (std::int32_t k = 0; k < stack.equations; ++k) stack.column[i][k] = wide ? entry(i, k) : entry(k, i);
+    stack.right[i] = 0;
   }
+  for (std::int32_t k = 0; k < stack.equations; ++k) stack.b[k] = 0;
+  factor(stack, floor);
   Real* x = wide ? weakest.u : weakest.v;
   Real* y = wide ? weakest.v : weakest.u;
   // Any start will do that is not orthogonal to what is sought; unlike entries make that unlikely.
   for (std::int32_t i = 0; i < size; ++i) x[i] = i % 2 == 0 ? Real{1} : Real(0.7);
   Real norm = 1;
   for (int round = 0; round < 4; ++round) {
-    for (std::int32_t i = 0; i < size; ++i) {
-      Real sum = x[i];
-      for (std::int32_t j = 0; j < i; ++j) sum -= triangle.row(j)[i] * x[j];
-      x[i] = sum / triangle.row(i)[i];
-    }
-    solve_upper(triangle, x, x);
+    solve_lower(stack, x, x);
+    solve_upper(stack, x, x);
     Real square = 0;
     for (std::int32_t i = 0; i < size; ++i) square += x[i] * x[i];
     norm = square_root(square);
     for (std::int32_t i = 0; i < size; ++i) x[i] /= norm;
   }
   weakest.s = Real{1} / square_root(norm);
-  for (std::int32_t k = 0; k < (wide ? columns : rows); ++k) {
+  for (std::int32_t k = 0; k < stack.equations; ++k) {
     Real sum = 0;
-    for (std::int32_t i = 0; i < size; ++i) {
-      const std::int32_t row = wide ? i : k;
-      sum += problem.row[row][wide ? k : i] * (row < turn ? Real{1} : per_weight) * x[i];
-    }
+    for (std::int32_t i = 0; i < size; ++i) sum += (wide ? entry(i, k) : entry(k, i)) * x[i];
     y[k] = sum / weakest.s;
   }
 }

@@ -125,6 +125,7 @@ void excursions(const char* name, const Geometry& geometry, double far_m, double
   long unreachable = 0;
   long evaluations = 0;
   int most = 0;
+  long wavering = 0;
   double regular_s = 0;
   double unreachable_s = 0;
   for (int n = 0; n < arms; ++n) {
@@ -139,6 +140,7 @@ void excursions(const char* name, const Geometry& geometry, double far_m, double
     unreachable += found.unreachable;
     evaluations += found.evaluations;
     most = std::max<int>(most, found.most);
+    wavering += found.wavering;
     // The cost beside that of a regular tick of the same arm, from a seed within a step.
     TickOptions<double> options = servo_options(arm);
     std::fill(options.max_step, options.max_step + 6, limit);
@@ -160,10 +162,10 @@ void excursions(const char* name, const Geometry& geometry, double far_m, double
   }
   std::printf("out of reach and back, %s, limit %g, %d postures: unique %d, of them elsewhere %d, others away %.1e rad; not "
               "unique %d, elsewhere %d; evaluations of an unreachable tick %.1f, %d at most; time over a regular one's "
-              "%.1f\n",
+              "%.1f; wavering %.2f %%\n",
               name, limit, arms, unique, unique_lost, away, arms - unique, other_lost,
               static_cast<double>(evaluations) / static_cast<double>(std::max(1L, unreachable)), most,
-              unreachable_s / regular_s);
+              unreachable_s / regular_s, 100.0 * static_cast<double>(wavering) / static_cast<double>(std::max(1L, unreachable)));
   std::fflush(stdout);
 }
 

@@ -160,6 +160,7 @@ struct Excursion {
   long unreachable = 0;           ///< that did not
   long evaluations = 0;           ///< of the unreachable ones
   std::int32_t most = 0;          ///< evaluations of one of them
+  long wavering = 0;              ///< ticks after which the position is worse by four times what the target moved
   double step = 0;                ///< largest |dq| of a tick
 };
 
@@ -181,6 +182,7 @@ inline Excursion there_and_back(const Arm<double>& arm, const double* start, dou
   std::copy(start, start + 6, q);
   Excursion found;
   found.unique = true;
+  double error_m = 0;
   std::vector<double> recent(static_cast<std::size_t>(border / 4) + 1, 1.0);
   for (int n = 1; n <= 2 * out + 2000; ++n) {
     const int steps = std::max(0, n <= out ? n : 2 * out - n);
@@ -191,6 +193,8 @@ inline Excursion there_and_back(const Arm<double>& arm, const double* start, dou
     TickReport<double> report{};
     const Status status = tick(arm, options, target, q, &report);
     for (int i = 0; i < 6; ++i) found.step = std::max(found.step, std::fabs(q[i] - last[i]));
+    if (report.position_error_m > error_m + 4 * advance_m) ++found.wavering;
+    error_m = report.position_error_m;
     if (status == Status::ok) {
       ++found.ticks;
     } else {

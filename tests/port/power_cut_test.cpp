@@ -112,7 +112,7 @@ TEST(PowerCut, OldOrNewOnSlotsOfSeveralSectorsErasedToZero) {
 // every pair of cuts.
 TEST(PowerCut, OldOrNewOnGranulesOf32Bytes) {
 #ifdef MDHCAL_EMULATED
-  constexpr int stride = 7;
+  constexpr int stride = 20;
 #else
   constexpr int stride = 1;
 #endif
