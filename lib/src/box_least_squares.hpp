@@ -22,18 +22,18 @@ struct BoxProblem {
 
 inline bool has(std::uint32_t mask, std::int32_t j) { return ((mask >> static_cast<std::uint32_t>(j)) & 1U) != 0U; }
 
-/// The least-squares problem of damping x = right over A x = b, and in its place the triangle R that factor() makes of it.
+/// The matrix of the least-squares problem of damping x = right over A x = b, and in its place the triangle R that
+/// factor() makes of it.
 struct Stack {
   std::int32_t size;        ///< unknowns
   std::int32_t equations;   ///< of A, at most max_joints
   Real column[max_joints][max_joints];   ///< of A; then [i][j - 1] is R_ij, j > i
-  Real b[max_joints];
   Real diagonal[max_joints];             ///< of R
-  Real right[max_joints];                ///< in the end R x = right
 };
 
 /// Reflection i takes column i of A into row i of the damping, which is zero right of its diagonal (Householder 1958).
-inline void factor(Stack& stack, Real damping) {
+/// Makes R x = right of the right-hand sides too, where they are given.
+inline void factor(Stack& stack, Real damping, Real* right, Real* b) {
   const std::int32_t equations = stack.equations;
   for (std::int32_t i = 0; i < stack.size; ++i) {
     Real v[max_joints];
@@ -54,11 +54,12 @@ inline void factor(Stack& stack, Real damping) {
       for (std::int32_t k = 0; k < equations; ++k) to[k] -= sum * v[k];
       stack.column[i][j - 1] = -sum * head;
     }
-    Real sum = head * stack.right[i];
-    for (std::int32_t k = 0; k < equations; ++k) sum += v[k] * stack.b[k];
+    if (b == nullptr) continue;
+    Real sum = head * right[i];
+    for (std::int32_t k = 0; k < equations; ++k) sum += v[k] * b[k];
     sum *= scale;
-    for (std::int32_t k = 0; k < equations; ++k) stack.b[k] -= sum * v[k];
-    stack.right[i] -= sum * head;
+    for (std::int32_t k = 0; k < equations; ++k) b[k] -= sum * v[k];
+    right[i] -= sum * head;
   }
 }
 
@@ -98,20 +99,22 @@ inline Real slope_of(const BoxProblem& problem, std::int32_t j) {
 /// The minimum over the unknowns in `free_mask`, the others at x; into `z`, in the order of the free ones.
 [[gnu::noinline]] void solve_free(const BoxProblem& problem, std::uint32_t free_mask, const Real* x, Real* z) {
   Stack stack;
+  Real right[max_joints];
+  Real b[7];
   stack.equations = problem.rows;
-  for (std::int32_t i = 0; i < problem.rows; ++i) stack.b[i] = problem.b[i];
+  for (std::int32_t i = 0; i < problem.rows; ++i) b[i] = problem.b[i];
   std::int32_t size = 0;
   for (std::int32_t j = 0; j < problem.columns; ++j) {
     if (has(free_mask, j)) {
       for (std::int32_t i = 0; i < problem.rows; ++i) stack.column[size][i] = problem.row[i][j];
-      stack.right[size++] = problem.damping * problem.pull[j];
+      right[size++] = problem.damping * problem.pull[j];
     } else {
-      for (std::int32_t i = 0; i < problem.rows; ++i) stack.b[i] -= problem.row[i][j] * x[j];
+      for (std::int32_t i = 0; i < problem.rows; ++i) b[i] -= problem.row[i][j] * x[j];
     }
   }
   stack.size = size;
-  factor(stack, problem.damping);
-  solve_upper(stack, stack.right, z);
+  factor(stack, problem.damping, right, b);
+  solve_upper(stack, right, z);
 }
 
 /// Goes from x towards z (the free unknowns' values) as far as the bounds let it. Returns the unknown that met a bound

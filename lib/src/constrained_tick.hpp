@@ -14,6 +14,8 @@ constexpr Real least_damping = sizeof(Real) == sizeof(double) ? Real(1e-8) : Rea
 /// The damping of the first step over the root of the error.
 constexpr Real care = Real(0.1);
 constexpr Real near_singular_below = Real(0.01);
+/// Further off than this a second-order model is of no use [rad, or lengths of the arm].
+constexpr Real furthest_leap = Real(0.05);
 /// What the linear model has to promise of the error's square: all but half where a pose is to be met, little where the
 /// best is to be made of it.
 constexpr Real half = Real(0.5);
@@ -361,27 +363,16 @@ inline Real falling(Real x, Real low, Real high) {
                   : Real{1};
 }
 
-/// For a search that rests near a fold without meeting the pose: goes along the weakest direction to where the
-/// second-order model s t + along t^2 / 2 of what it answers meets the pose, to the nearer root, then to the other, and
-/// searches from there.
-[[gnu::noinline]] void leave_fold(Search& search, Bend& bend) {
-  // Further off than this the model is of no use [rad, or lengths of the arm].
-  constexpr Real furthest = Real(0.05);
+/// Searches from where s t + along t^2 / 2 = wanted puts the joints along the weakest direction: from the nearer root,
+/// then from the other.
+[[gnu::noinline]] void search_roots(Search& search, const Bend& bend, Real discriminant) {
   TickState& state = *search.state;
-  if (search.cost > furthest * furthest * furthest * furthest) return;
-  look_along(search, state.q, bend);
-  const Real s = bend.weakest.s;
-  Real discriminant = s * s + Real{2} * bend.along * bend.wanted;
-  // A pose on the fold is short of it by rounding; within the tolerances that is no matter.
-  const Real short_by = Real{2} * magnitude(bend.along) * state.options->rotation_tolerance_rad;
-  if (discriminant < Real{0} && discriminant > -short_by) discriminant = 0;
-  if (!(s < near_singular_below) || !(discriminant >= Real{0})) return;
   Real rest[max_joints];
   for (std::int32_t j = 0; j < search.problem.columns; ++j) rest[j] = state.q[j];
-  const Real sum = s + square_root(discriminant);
+  const Real sum = bend.weakest.s + square_root(discriminant);
   for (int root = 0; root < 2 && !search.met; ++root) {
     const Real leap = root == 0 ? Real{2} * bend.wanted / sum : -sum / bend.along;
-    if (!(magnitude(leap) < furthest)) return;
+    if (!(magnitude(leap) < furthest_leap)) return;
     for (std::int32_t j = 0; j < search.problem.columns; ++j) {
       const Real next = rest[j] + leap * bend.weakest.v[j] * joint_unit(state, j);
       state.q[j] = next < state.low[j] ? state.low[j] : (next > state.high[j] ? state.high[j] : next);
@@ -389,6 +380,20 @@ inline Real falling(Real x, Real low, Real high) {
     start(search, state, state.q);
     minimise(search, {care, true, nullptr, false, half, 2, state.options->max_iterations});
   }
+}
+
+/// For a search that rests near a fold without meeting the pose, since there the error hardly has a slope: goes to where
+/// the second-order model of what the weakest direction answers meets the pose.
+[[gnu::noinline]] void leave_fold(Search& search, Bend& bend) {
+  constexpr Real nearby = furthest_leap * furthest_leap;
+  if (search.cost > nearby * nearby) return;
+  look_along(search, search.state->q, bend);
+  const Real s = bend.weakest.s;
+  Real discriminant = s * s + Real{2} * bend.along * bend.wanted;
+  // A pose on the fold is short of it by rounding; within the tolerances that is no matter.
+  const Real short_by = Real{2} * magnitude(bend.along) * search.state->options->rotation_tolerance_rad;
+  if (discriminant < Real{0} && discriminant > -short_by) discriminant = 0;
+  if (s < near_singular_below && discriminant >= Real{0}) search_roots(search, bend, discriminant);
 }
 
 /// Starts over from the last joints, if the search is not `there`. What the weakest singular direction does decides how

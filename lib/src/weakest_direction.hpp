@@ -33,10 +33,8 @@ struct Weakest {
   const std::int32_t size = stack.size;
   for (std::int32_t i = 0; i < size; ++i) {
     for (std::int32_t k = 0; k < stack.equations; ++k) stack.column[i][k] = wide ? entry(i, k) : entry(k, i);
-    stack.right[i] = 0;
   }
-  for (std::int32_t k = 0; k < stack.equations; ++k) stack.b[k] = 0;
-  factor(stack, floor);
+  factor(stack, floor, nullptr, nullptr);
   Real* x = wide ? weakest.u : weakest.v;
   Real* y = wide ? weakest.v : weakest.u;
   // Any start will do that is not orthogonal to what is sought; unlike entries make that unlikely.
