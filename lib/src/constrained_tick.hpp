@@ -16,11 +16,11 @@ constexpr Real care = Real(0.1);
 constexpr Real near_singular_below = Real(0.01);
 /// Further off than this a second-order model is of no use [rad, or lengths of the arm].
 constexpr Real furthest_leap = Real(0.05);
-/// What the linear model has to promise of the error's square: all but half where a pose is to be met, little where the
-/// best is to be made of it.
+/// The part of the error's square that the linear model has to promise away: half where a pose is to be met, little where
+/// the best is to be made of it.
 constexpr Real half = Real(0.5);
 constexpr Real little = Real(1e-5);
-/// And after the first step: what comes as slowly as that can wait for the next tick.
+/// After the first step at least this: what comes more slowly can wait for the next tick.
 constexpr Real creeping = Real(0.003);
 
 /// A minimisation's joints, and the linear model there.
@@ -269,7 +269,7 @@ inline void set_pull(Search& search, bool posture) {
   const Real cost = square(b, search.problem.rows);
   const Real ratio = (search.cost - cost) / (search.cost - predicted);
   const bool goes = search.met || posture || ratio > Real(0.001);
-  // Nearly as predicted, it has to halve the cost; else it has to do more, since Newton's method will not.
+  // A step that does as predicted has to halve the cost to count as a gain, one that does not to quarter it.
   const Real enough = ratio > Real(0.75) ? Real(0.5) : Real(0.25);
   if (!posture) {
     if (!goes || !(cost < enough * search.cost)) --search.patience;
