@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: MIT
 # Sourced by demo.sh and test.sh from the project's root: configure PRESET [OPTION...].
 jobs="$(nproc 2>/dev/null || echo 2)"
-# A compiler waits for files now and then: as many more jobs as Ninja takes by itself built a third faster on two cores.
-build_jobs="$((jobs + 2))"
 
 # Ninja and ccache are used where they are; a tree that was configured before keeps its generator.
 configure() {

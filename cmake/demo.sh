@@ -12,7 +12,7 @@ bash cmake/setup.sh
 source cmake/build.sh
 echo "Building the tool (some minutes the first time) ..."
 configure host >"$log" 2>&1
-cmake --build build/host --parallel "$build_jobs" --target mdhcal >>"$log" 2>&1
+cmake --build build/host --parallel "$jobs" --target mdhcal >>"$log" 2>&1
 trap - ERR
 
 example=offline/examples/li2022

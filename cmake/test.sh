@@ -22,7 +22,7 @@ if [[ "${CI:-}" == true ]]; then options+=(-DMDHCAL_WERROR=ON); fi
 failed=()
 for preset in "${presets[@]}"; do
   echo "== $preset"
-  if ! { configure "$preset" "${options[@]}" && cmake --build "build/$preset" --parallel "$build_jobs" &&
+  if ! { configure "$preset" "${options[@]}" && cmake --build "build/$preset" --parallel "$jobs" &&
          ctest --preset "$preset" -j "$jobs"; }; then
     failed+=("$preset")
   fi
