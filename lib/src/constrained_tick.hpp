@@ -252,14 +252,17 @@ inline void set_pull(Search& search, bool posture) {
   }
 }
 
+inline Real within_bounds(const TickState& state, std::int32_t j, Real q) {
+  return q < state.low[j] ? state.low[j] : (q > state.high[j] ? state.high[j] : q);
+}
+
 /// Goes the step if that meets the pose, or brings some of what the linear model `predicted` of the cost, and adapts the
 /// damping and the patience; one towards the posture is gone whatever it costs. Returns whether it went.
 [[gnu::noinline]] bool go(Search& search, const Aim& aim, const Real* step, Real predicted, bool posture) {
   TickState& state = *search.state;
   Real q[max_joints];
   for (std::int32_t j = 0; j < search.problem.columns; ++j) {
-    const Real next = state.q[j] + step[j] * joint_unit(state, j);
-    q[j] = next < state.low[j] ? state.low[j] : (next > state.high[j] ? state.high[j] : next);
+    q[j] = within_bounds(state, j, state.q[j] + step[j] * joint_unit(state, j));
   }
   Look look;
   look_at(state, q, look);
@@ -370,15 +373,15 @@ inline Real falling(Real x, Real low, Real high) {
   Real rest[max_joints];
   for (std::int32_t j = 0; j < search.problem.columns; ++j) rest[j] = state.q[j];
   const Real sum = bend.weakest.s + square_root(discriminant);
-  for (int root = 0; root < 2 && !search.met; ++root) {
+  const std::int32_t most = state.options->max_iterations;
+  for (int root = 0; root < 2 && !search.met && state.evaluations < most; ++root) {
     const Real leap = root == 0 ? Real{2} * bend.wanted / sum : -sum / bend.along;
     if (!(magnitude(leap) < furthest_leap)) return;
     for (std::int32_t j = 0; j < search.problem.columns; ++j) {
-      const Real next = rest[j] + leap * bend.weakest.v[j] * joint_unit(state, j);
-      state.q[j] = next < state.low[j] ? state.low[j] : (next > state.high[j] ? state.high[j] : next);
+      state.q[j] = within_bounds(state, j, rest[j] + leap * bend.weakest.v[j] * joint_unit(state, j));
     }
     start(search, state, state.q);
-    minimise(search, {care, true, nullptr, false, half, 2, state.options->max_iterations});
+    minimise(search, {care, true, nullptr, false, half, 2, most});
   }
 }
 
@@ -386,7 +389,7 @@ inline Real falling(Real x, Real low, Real high) {
 /// the second-order model of what the weakest direction answers meets the pose.
 [[gnu::noinline]] void leave_fold(Search& search, Bend& bend) {
   constexpr Real nearby = furthest_leap * furthest_leap;
-  if (search.cost > nearby * nearby) return;
+  if (search.cost > nearby * nearby || !(search.state->evaluations < search.state->options->max_iterations)) return;
   look_along(search, search.state->q, bend);
   const Real s = bend.weakest.s;
   Real discriminant = s * s + Real{2} * bend.along * bend.wanted;

@@ -326,7 +326,7 @@ TYPED_TEST(TickInput, BearsTheSmallestOptions) {
     const Status status = tick(arm, options, target, q, &report);
     EXPECT_NE(status, Status::bad_input);
     EXPECT_LE(std::fabs(q[n % 6] - last[n % 6]), least) << n;
-    EXPECT_LE(report.iterations, options.max_iterations + 6) << n;
+    EXPECT_LE(report.iterations, options.max_iterations + 4) << n;
     for (const Real joint : q) ASSERT_TRUE(std::isfinite(joint)) << n;
   }
 }

@@ -27,7 +27,7 @@ void crosses(bool parallel, double errors_mm, double position_m, std::uint64_t s
     ASSERT_LT(found.turned_rad, 1e-9);
     EXPECT_LT(found.position_m, position_m) << n;
     EXPECT_LE(found.step, servo_step) << n;
-    EXPECT_LE(found.rotation_rad, (emulated ? 3.0 : 2.0) * found.own_rad) << n;
+    EXPECT_LE(found.rotation_rad, 2.0 * found.own_rad) << n;
     EXPECT_TRUE(found.met) << n;
   }
 }

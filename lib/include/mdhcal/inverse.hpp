@@ -22,7 +22,7 @@ struct TickOptions {
   Real position_weight;         ///< weight of the position error over the reach where not all can be met; > 0 [1]
   Real rotation_weight;         ///< weight of the rotation error there; > 0 [1]
   std::int32_t max_iterations;  ///< bound of evaluations of the arm in one tick, 1 ... max_tick_iterations; where the
-                                ///< pose cannot be met up to six more
+                                ///< pose cannot be met up to four more
   Task task;
   Real posture[max_joints];     ///< where joints that the task leaves free should go [rad] or [m]
   Real posture_gain;            ///< part of the way to it in one tick, 0 (off) ... 1
