@@ -24,7 +24,7 @@ struct GroupRows {
 std::vector<GroupRows> rows_by_group(const Calibration& c, double noise_mm) {
   const Dataset& data = c.training;
   const bool any_sigma = states_sigma(data);
-  const Model model(c.estimate);
+  const MeasurementModel model(c.estimate);
   const std::size_t n = c.layout.columns();
   std::vector<std::int64_t> place(data.groups.size(), -1);
   std::vector<GroupRows> groups;

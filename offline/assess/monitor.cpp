@@ -8,15 +8,13 @@
 
 #include "offline/assess/distributions.hpp"
 #include "offline/identify/registration.hpp"
+#include "offline/identify/rigid.hpp"
 #include "offline/robot/rotation.hpp"
+#include "offline/robot/units.hpp"
 
 namespace mdhcal::offline {
 
 namespace {
-
-double norm(const Vector3& v) { return std::hypot(v[0], v[1], v[2]); }
-
-Vector3 difference(const Vector3& a, const Vector3& b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
 
 std::string sentence_of(const MonitorResult& r) {
   char text[400];
@@ -64,7 +62,7 @@ MonitorResult monitor(const std::vector<Vector3>& predicted_m, const std::vector
 
   double squares = 0;
   for (std::size_t i = 0; i < out.count; ++i) {
-    const double error = 1e3 * norm(difference(predicted_m[i], measured_m[i]));
+    const double error = 1e3 * norm(minus(predicted_m[i], measured_m[i]));
     squares += error * error;
     out.mean_mm += error / n;
     out.max_mm = std::max(out.max_mm, error);
@@ -80,16 +78,16 @@ MonitorResult monitor(const std::vector<Vector3>& predicted_m, const std::vector
       for (std::size_t k = 0; k < 3; ++k) middle[k] += p[k] / n;
     }
     for (std::size_t i = 0; i < out.count; ++i) {
-      const double error = 1e3 * norm(difference(transform(motion, predicted_m[i]), measured_m[i]));
+      const double error = 1e3 * norm(minus(transform(motion, predicted_m[i]), measured_m[i]));
       left += error * error;
       out.refitted_mean_mm += error / n;
     }
     out.refitted_ratio = left / (3 * n - 6) / variance;
     out.refitted_p_value = f_upper_tail(out.refitted_ratio, 3 * n - 6, expected_freedom);
-    out.shift_mm = 1e3 * norm(difference(transform(motion, middle), middle));
+    out.shift_mm = 1e3 * norm(minus(transform(motion, middle), middle));
     const Pose<double> turn = pose_of(motion);
     out.turn_deg = norm(rotation_vector_of({turn.quaternion[0], turn.quaternion[1], turn.quaternion[2], turn.quaternion[3]})) *
-                   180 / std::numbers::pi;
+                   deg_per_rad;
   }
   if (out.p_value < alpha) {
     const bool motion_explains = out.count >= 4 && out.refitted_p_value >= alpha;

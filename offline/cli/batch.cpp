@@ -22,7 +22,7 @@ namespace mdhcal::offline {
 
 namespace {
 
-struct Arguments {
+struct BatchArguments {
   std::string manifest, slice;
   CalibrationArguments calibration;  // its robot and measurements are the manifest's
   BatchOptions options;
@@ -52,7 +52,7 @@ void print_json(const std::vector<BatchOutcome>& outcomes, const std::string& su
   std::fputs((json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + '\n').c_str(), stdout);
 }
 
-void run(Arguments& arguments) {
+void run_batch(BatchArguments& arguments) {
   std::vector<BatchEntry> entries = read_manifest(arguments.manifest);
   std::string suffix;
   if (!arguments.slice.empty()) {
@@ -96,7 +96,7 @@ void run(Arguments& arguments) {
 }  // namespace
 
 void add_batch(CLI::App& app) {
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<BatchArguments>();
   BatchOptions& options = arguments->options;
   CLI::App* command = app.add_subcommand("batch", "Calibrate many robots, a folder each and one summary");
   command->add_option("MANIFEST", arguments->manifest,
@@ -115,7 +115,7 @@ void add_batch(CLI::App& app) {
   command->footer(
       "Example:\n  mdhcal batch fleet.csv -o fleet -j 8\n"
       "  parallel mdhcal batch fleet.csv -o fleet --slice {}/4 ::: 1 2 3 4 && mdhcal batch fleet.csv -o fleet");
-  command->callback([arguments] { run(*arguments); });
+  command->callback([arguments] { run_batch(*arguments); });
 }
 
 }  // namespace mdhcal::offline

@@ -50,7 +50,7 @@ void tell(const Calibration& c, const Assessment& assessment) {
   inform(figures_text(c) + c.verdict);
 }
 
-void run(const CalibrateArguments& arguments) {
+void run_calibrate(const CalibrateArguments& arguments) {
   const CalibrationOptions options = calibration_options(arguments);
   const std::string date = blob_date(arguments.date);
   const Robot robot = read_robot(arguments.robot);
@@ -91,7 +91,7 @@ void add_calibrate(CLI::App& app) {
   command->add_option("--date", arguments->date, "Date in the blob, YYYY-MM-DD");
   command->footer(
       "Example:\n  mdhcal calibrate robot.toml nine_poses.csv --test eighteen_poses.csv --base given --tool given -o result");
-  command->callback([arguments] { run(*arguments); });
+  command->callback([arguments] { run_calibrate(*arguments); });
 }
 
 }  // namespace mdhcal::offline

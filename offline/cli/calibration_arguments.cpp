@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "offline/error.hpp"
+#include "offline/robot/units.hpp"
 
 namespace mdhcal::offline {
 
@@ -55,7 +56,7 @@ CalibrationOptions calibration_options(const CalibrationArguments& a) {
   }
   options.parameters.fix = a.fix;
   options.parameters.free = a.free;
-  options.parameters.parallel_rad = a.parallel_deg / 57.29577951308232;
+  options.parameters.parallel_rad = a.parallel_deg / deg_per_rad;
   options.parameters.prior_length_m = 1e-3 * a.prior_length_mm;
   options.parameters.prior_angle_rad = 1e-3 * a.prior_angle_mrad;
   if (options.lambda && !(*options.lambda >= 0.0 && std::isfinite(*options.lambda))) {

@@ -145,7 +145,7 @@ Comparison compare_methods(const Robot& robot, const Dataset& data, const Calibr
   return out;
 }
 
-void run(const CalibrationArguments& arguments) {
+void run_compare(const CalibrationArguments& arguments) {
   const CalibrationOptions options = calibration_options(arguments);
   const Robot robot = read_robot(arguments.robot);
   const Dataset data = read_dataset(arguments.measurements, robot);
@@ -186,7 +186,7 @@ void add_compare(CLI::App& app) {
   CLI::App* command = app.add_subcommand("compare", "Run every identification method on the same split");
   add_calibration_arguments(*command, *arguments);
   command->footer("Example:\n  mdhcal compare robot.toml nine.csv --test eighteen.csv --base given --tool given -o compared");
-  command->callback([arguments] { run(*arguments); });
+  command->callback([arguments] { run_compare(*arguments); });
 }
 
 }  // namespace mdhcal::offline

@@ -13,7 +13,7 @@ namespace mdhcal::offline {
 
 namespace {
 
-struct Arguments {
+struct ConvertArguments {
   std::string input, output, base, tip, model, urdf;
 };
 
@@ -31,7 +31,7 @@ Format format_of(const std::string& path) {
                                    "kinematics) or .conf (UR calibration).");
 }
 
-Robot read(const Arguments& arguments) {
+Robot read(const ConvertArguments& arguments) {
   const std::string& path = arguments.input;
   switch (format_of(path)) {
     case Format::robot: return read_robot(path);
@@ -45,7 +45,7 @@ Robot read(const Arguments& arguments) {
   return parse_ur_calibration(read_file(path, "a UR calibration"), path, arguments.model);
 }
 
-std::string written(const Arguments& arguments, const Robot& robot) {
+std::string written(const ConvertArguments& arguments, const Robot& robot) {
   switch (format_of(arguments.output)) {
     case Format::robot: return write_robot(robot);
     case Format::urdf:
@@ -58,7 +58,7 @@ std::string written(const Arguments& arguments, const Robot& robot) {
                                            ".urdf or .yaml.");
 }
 
-void run(const Arguments& arguments) {
+void run_convert(const ConvertArguments& arguments) {
   format_of(arguments.output);
   write_file(arguments.output, written(arguments, read(arguments)));
 }
@@ -66,7 +66,7 @@ void run(const Arguments& arguments) {
 }  // namespace
 
 void add_convert(CLI::App& app) {
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<ConvertArguments>();
   CLI::App* command = app.add_subcommand(
       "convert", "Robot descriptions from and to other programs: URDF, ROS kinematics, UR calibration");
   command->add_option("IN", arguments->input, "Robot file (.toml), URDF (.urdf), ROS kinematics (.yaml) or UR "
@@ -82,7 +82,7 @@ void add_convert(CLI::App& app) {
       "Examples: mdhcal convert arm.urdf --tip tool0 -o robot.toml\n"
       "          mdhcal convert corrected.toml --urdf arm.urdf --tip tool0 -o corrected.urdf\n"
       "          mdhcal convert calibration.conf --model ur10e -o factory.toml");
-  command->callback([arguments] { run(*arguments); });
+  command->callback([arguments] { run_convert(*arguments); });
 }
 
 }  // namespace mdhcal::offline

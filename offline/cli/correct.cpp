@@ -12,12 +12,12 @@ namespace mdhcal::offline {
 
 namespace {
 
-struct Arguments {
+struct CorrectArguments {
   std::string blob, joints;
 };
 
 // The pose that a controller with the nominal geometry means by its joints, met by the arm as it is.
-void run(const Arguments& arguments) {
+void run_correct(const CorrectArguments& arguments) {
   const BlobArm blob = read_blob_arm(arguments.blob, PoseOptions{});
   Geometry nominal = blob.model.geometry;
   std::copy(std::begin(blob.model.nominal), std::end(blob.model.nominal), nominal.link);
@@ -40,12 +40,12 @@ void run(const Arguments& arguments) {
 }  // namespace
 
 void add_correct(CLI::App& app) {
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<CorrectArguments>();
   CLI::App* command = app.add_subcommand("correct", "Turn nominal joints into corrected joints that reach the pose meant");
   command->add_option("BLOB", arguments->blob, "Parameter blob")->required();
   command->add_option("JOINTS", arguments->joints, "Table (CSV) with q1..qN of the nominal robot")->required();
   command->footer("Example:\n  mdhcal correct result/calibration.blob program.csv > corrected.csv");
-  command->callback([arguments] { run(*arguments); });
+  command->callback([arguments] { run_correct(*arguments); });
 }
 
 }  // namespace mdhcal::offline

@@ -10,12 +10,12 @@ namespace mdhcal::offline {
 
 namespace {
 
-struct Arguments {
+struct DiffArguments {
   std::string a, b;
   bool json = false;
 };
 
-void run(const Arguments& arguments) {
+void run_diff(const DiffArguments& arguments) {
   const nlohmann::ordered_json difference =
       difference_json(read_blob_file(arguments.a).model, read_blob_file(arguments.b).model);
   const std::string text = arguments.json
@@ -27,13 +27,13 @@ void run(const Arguments& arguments) {
 }  // namespace
 
 void add_diff(CLI::App& app) {
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<DiffArguments>();
   CLI::App* command = app.add_subcommand("diff", "Print what changed between two calibrations of one robot");
   command->add_option("A", arguments->a, "Parameter blob, the earlier one")->required();
   command->add_option("B", arguments->b, "Parameter blob, the later one")->required();
   command->add_flag("--json", arguments->json, "JSON for programs");
   command->footer("Example:\n  mdhcal diff january/calibration.blob june/calibration.blob");
-  command->callback([arguments] { run(*arguments); });
+  command->callback([arguments] { run_diff(*arguments); });
 }
 
 }  // namespace mdhcal::offline

@@ -15,13 +15,13 @@ namespace mdhcal::offline {
 
 namespace {
 
-struct Arguments {
+struct ExportArguments {
   std::string blob, output, format, address, symbol = "mdhcal_blob";
   bool slot = false;
   std::uint32_t sequence = 1;
 };
 
-std::uint64_t address_of(const Arguments& arguments) {
+std::uint64_t address_of(const ExportArguments& arguments) {
   const std::string& text = arguments.address;
   if (text.empty()) {
     if (arguments.format == "hex" || arguments.format == "srec") {
@@ -43,7 +43,7 @@ std::uint64_t address_of(const Arguments& arguments) {
   return address;
 }
 
-std::vector<std::uint8_t> image_of(const Arguments& arguments) {
+std::vector<std::uint8_t> image_of(const ExportArguments& arguments) {
   const Blob blob = read_blob_file(arguments.blob).bytes;
   std::vector<std::uint8_t> image;
   if (arguments.slot) {
@@ -56,7 +56,7 @@ std::vector<std::uint8_t> image_of(const Arguments& arguments) {
   return image;
 }
 
-void run(const Arguments& arguments) {
+void run_export(const ExportArguments& arguments) {
   const std::uint64_t address = address_of(arguments);
   const std::vector<std::uint8_t> image = image_of(arguments);
   std::string text;
@@ -70,7 +70,7 @@ void run(const Arguments& arguments) {
 }  // namespace
 
 void add_export(CLI::App& app) {
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<ExportArguments>();
   CLI::App* command = app.add_subcommand("export", "Write a blob as an image for a flash programmer or a compiler");
   command->add_option("BLOB", arguments->blob, "Parameter blob")->required();
   command->add_option("--format", arguments->format, "bin, hex (Intel HEX), srec (S-record) or c (array for C and C++)")
@@ -82,7 +82,7 @@ void add_export(CLI::App& app) {
   command->add_option("--sequence", arguments->sequence, "Sequence in the slot header")->needs(slot)->capture_default_str();
   command->add_option("--symbol", arguments->symbol, "Name of the array in C")->capture_default_str();
   command->footer("Example:\n  mdhcal export calibration.blob --format hex --address 0x08040000 --slot --sequence 1 -o slot.hex");
-  command->callback([arguments] { run(*arguments); });
+  command->callback([arguments] { run_export(*arguments); });
 }
 
 }  // namespace mdhcal::offline

@@ -13,12 +13,12 @@ namespace mdhcal::offline {
 
 namespace {
 
-struct Arguments {
+struct ForwardArguments {
   std::string blob, joints;
   PoseOptions pose;
 };
 
-void run(const Arguments& arguments) {
+void run_forward(const ForwardArguments& arguments) {
   const BlobArm blob = read_blob_arm(arguments.blob, arguments.pose);
   const Table<JointRow> table = read_joint_file(arguments.joints, blob.model.geometry);
   inform_all(table.notes);
@@ -41,7 +41,7 @@ void run(const Arguments& arguments) {
 }  // namespace
 
 void add_forward(CLI::App& app) {
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<ForwardArguments>();
   CLI::App* command = app.add_subcommand("forward", "Print the poses of joints, as a controller with this blob computes them");
   command->add_option("BLOB", arguments->blob, "Parameter blob")->required();
   command->add_option("JOINTS", arguments->joints, "Table (CSV) with q1..qN, in degrees and millimetres unless a column "
@@ -49,7 +49,7 @@ void add_forward(CLI::App& app) {
       ->required();
   arguments->pose.add_to(*command);
   command->footer("Example:\n  mdhcal forward result/calibration.blob joints.csv > poses.csv");
-  command->callback([arguments] { run(*arguments); });
+  command->callback([arguments] { run_forward(*arguments); });
 }
 
 }  // namespace mdhcal::offline

@@ -10,7 +10,7 @@ namespace mdhcal::offline {
 
 namespace {
 
-struct Arguments {
+struct InverseArguments {
   std::string blob, poses;
   PoseOptions pose;
   bool all = false;
@@ -20,7 +20,7 @@ void append(std::string& out, const Geometry& geometry, const std::string& id, c
   out += csv_field(id) + ',' + status_word(solved.status) + joint_fields(geometry, solved.q.data()) + '\n';
 }
 
-void run(const Arguments& arguments) {
+void run_inverse(const InverseArguments& arguments) {
   const BlobArm blob = read_blob_arm(arguments.blob, arguments.pose);
   const Geometry& geometry = blob.model.geometry;
   const Table<PoseRow> table = read_pose_file(arguments.poses, geometry);
@@ -42,7 +42,7 @@ void run(const Arguments& arguments) {
 }  // namespace
 
 void add_inverse(CLI::App& app) {
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<InverseArguments>();
   CLI::App* command = app.add_subcommand("inverse", "Print the joints of poses, as a controller with this blob computes them");
   command->add_option("BLOB", arguments->blob, "Parameter blob")->required();
   command->add_option("POSES", arguments->poses, "Table (CSV) with x,y,z and qw,qx,qy,qz or rx,ry,rz, and optionally the "
@@ -51,7 +51,7 @@ void add_inverse(CLI::App& app) {
   command->add_flag("--all", arguments->all, "Every solution, a row each");
   arguments->pose.add_to(*command);
   command->footer("Example:\n  mdhcal inverse result/calibration.blob poses.csv > joints.csv");
-  command->callback([arguments] { run(*arguments); });
+  command->callback([arguments] { run_inverse(*arguments); });
 }
 
 }  // namespace mdhcal::offline

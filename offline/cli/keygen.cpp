@@ -29,7 +29,7 @@ void write_secret(const std::string& path, const std::string& text) {
   }
 }
 
-void run(const std::string& output) {
+void run_keygen(const std::string& output) {
   const std::string secret_path = output + ".key";
   const std::string public_path = output + ".pub";
   if (std::filesystem::exists(public_path)) {
@@ -47,7 +47,7 @@ void add_keygen(CLI::App& app) {
   CLI::App* command = app.add_subcommand("keygen", "Make an Ed25519 key pair that signs blobs: NAME.key and NAME.pub");
   command->add_option("-o,--output", *output, "NAME of the two files")->required();
   command->footer("Example:\n  mdhcal keygen -o metrology");
-  command->callback([output] { run(*output); });
+  command->callback([output] { run_keygen(*output); });
 }
 
 }  // namespace mdhcal::offline

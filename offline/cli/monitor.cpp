@@ -17,7 +17,7 @@ namespace mdhcal::offline {
 
 namespace {
 
-struct Arguments {
+struct MonitorArguments {
   std::string blob, measurements;
   std::optional<double> expected_mean_mm;
   std::size_t expected_count = 50;
@@ -25,7 +25,7 @@ struct Arguments {
   bool json = false;
 };
 
-void run(const Arguments& arguments) {
+void run_monitor(const MonitorArguments& arguments) {
   const BlobArm blob = read_blob_arm(arguments.blob, PoseOptions{});
   const Robot robot = robot_of(blob.model, arguments.blob);
   const Dataset data = read_measurements(arguments.measurements, robot);
@@ -75,7 +75,7 @@ void run(const Arguments& arguments) {
 }  // namespace
 
 void add_monitor(CLI::App& app) {
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<MonitorArguments>();
   CLI::App* command = app.add_subcommand("monitor", "Say from a short check series whether a recalibration is due");
   command->add_option("BLOB", arguments->blob, "Parameter blob")->required();
   command->add_option("MEASUREMENTS", arguments->measurements, "Check series (CSV), some ten poses")->required();
@@ -88,7 +88,7 @@ void add_monitor(CLI::App& app) {
       ->capture_default_str();
   command->add_flag("--json", arguments->json, "Print the figures as JSON");
   command->footer("Example:\n  mdhcal monitor result/calibration.blob check.csv");
-  command->callback([arguments] { run(*arguments); });
+  command->callback([arguments] { run_monitor(*arguments); });
 }
 
 }  // namespace mdhcal::offline

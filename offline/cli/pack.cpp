@@ -10,12 +10,12 @@ namespace mdhcal::offline {
 
 namespace {
 
-struct Arguments {
+struct PackArguments {
   std::string robot, output;
   std::optional<std::string> date;
 };
 
-void run(const Arguments& arguments) {
+void run_pack(const PackArguments& arguments) {
   const Robot robot = read_robot(arguments.robot);
   Provenance provenance;
   provenance.date = blob_date(arguments.date);
@@ -26,13 +26,13 @@ void run(const Arguments& arguments) {
 }  // namespace
 
 void add_pack(CLI::App& app) {
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<PackArguments>();
   CLI::App* command = app.add_subcommand("pack", "Write a blob from a robot file alone");
   command->add_option("ROBOT", arguments->robot, "Robot file (TOML)")->required();
   command->add_option("-o,--output", arguments->output, "Blob to write")->required();
   command->add_option("--date", arguments->date, "Date in the blob, YYYY-MM-DD; default SOURCE_DATE_EPOCH, else today");
   command->footer("Example:\n  mdhcal pack robot.toml -o nominal.blob");
-  command->callback([arguments] { run(*arguments); });
+  command->callback([arguments] { run_pack(*arguments); });
 }
 
 }  // namespace mdhcal::offline

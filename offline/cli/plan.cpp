@@ -3,7 +3,6 @@
 #include <cstdio>
 #include <map>
 #include <memory>
-#include <numbers>
 
 #include <nlohmann/json.hpp>
 
@@ -14,14 +13,14 @@
 #include "offline/measure/joint_file.hpp"
 #include "offline/output/folder.hpp"
 #include "offline/plan/plan.hpp"
+#include "offline/robot/units.hpp"
 
 namespace mdhcal::offline {
 
 namespace {
 
-constexpr double degree_rad = std::numbers::pi / 180;
 
-struct Arguments {
+struct PlanArguments {
   std::string robot, candidates, output, criterion = "position", base = "fit", tool = "fit";
   std::vector<double> tracker_mm, normal{0, 0, 1};
   std::vector<double> keep_out_mm;  // six numbers a box
@@ -36,7 +35,7 @@ const std::map<std::string, Criterion>& criteria() {
   return names;
 }
 
-Reach reach_of(const Arguments& arguments) {
+Reach reach_of(const PlanArguments& arguments) {
   Reach reach;
   if (!arguments.tracker_mm.empty()) {
     reach.tracker_p_m = Vector3{};
@@ -45,7 +44,7 @@ Reach reach_of(const Arguments& arguments) {
   const double length = std::hypot(arguments.normal[0], arguments.normal[1], arguments.normal[2]);
   if (!(length > 0)) throw InputError("Found the reflector normal 0, 0, 0; expected a direction (--normal 0 0 1).");
   for (std::size_t k = 0; k < 3; ++k) reach.reflector_normal[k] = arguments.normal[k] / length;
-  reach.cone_rad = arguments.cone_deg * degree_rad;
+  reach.cone_rad = arguments.cone_deg * rad_per_deg;
   for (std::size_t at = 0; at + 6 <= arguments.keep_out_mm.size(); at += 6) {
     const double* box = arguments.keep_out_mm.data() + at;
     Box out;
@@ -67,7 +66,7 @@ std::string joints_csv(const Plan& plan, const Geometry& geometry) {
       char number[32];
       // A ten-thousandth of a degree and a tenth of a micrometre: what a controller takes.
       std::snprintf(number, sizeof number, ",%.4f",
-                    plan.poses[p][i] * (geometry.joint[i].kind == JointKind::revolute ? 1 / degree_rad : 1e3));
+                    plan.poses[p][i] * (geometry.joint[i].kind == JointKind::revolute ? deg_per_rad : 1e3));
       text += number;
     }
     text += '\n';
@@ -90,7 +89,7 @@ void print_json(const Plan& plan) {
   json["parameters"] = nlohmann::ordered_json::array();
   for (const ExpectedParameter& p : plan.parameters) {
     const std::string unit = p.is_angle ? "_deg" : "_mm";
-    const double factor = p.is_angle ? 1 / degree_rad : 1e3;
+    const double factor = p.is_angle ? deg_per_rad : 1e3;
     json["parameters"].push_back({{"name", p.name},
                                   {"prior_sd" + unit, p.prior_sd * factor},
                                   {"expected_sd" + unit, p.expected_sd * factor}});
@@ -110,13 +109,13 @@ void print_text(const Plan& plan) {
   line("with 10 further poses", plan.with_ten_more);
   std::printf("\nparameter   standard deviation before -> after\n");
   for (const ExpectedParameter& p : plan.parameters) {
-    const double factor = p.is_angle ? 1 / degree_rad : 1e3;
+    const double factor = p.is_angle ? deg_per_rad : 1e3;
     std::printf("%-8s %10.5f -> %.5f %s\n", p.name.c_str(), p.prior_sd * factor, p.expected_sd * factor,
                 p.is_angle ? "deg" : "mm");
   }
 }
 
-void run(Arguments& arguments) {
+void run_plan(PlanArguments& arguments) {
   const Robot robot = read_robot(arguments.robot);
   std::vector<Joints> candidates;
   if (!arguments.candidates.empty()) {
@@ -147,7 +146,7 @@ void run(Arguments& arguments) {
 }  // namespace
 
 void add_plan(CLI::App& app) {
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<PlanArguments>();
   CLI::App* command = app.add_subcommand("plan", "Choose the poses to measure, and say what to expect of them");
   command->add_option("ROBOT", arguments->robot, "Robot file")->required();
   command->add_option("--count", arguments->options.count, "Poses to choose")->required();
@@ -182,7 +181,7 @@ void add_plan(CLI::App& app) {
   command->add_option("--seed", arguments->options.seed, "Seed of the random configurations")->capture_default_str();
   command->add_flag("--json", arguments->json, "Print the expectations as JSON");
   command->footer("Example:\n  mdhcal plan robot.toml --count 40 --tracker 2500 0 800 -o poses.csv");
-  command->callback([arguments] { run(*arguments); });
+  command->callback([arguments] { run_plan(*arguments); });
 }
 
 }  // namespace mdhcal::offline

@@ -12,12 +12,12 @@ namespace mdhcal::offline {
 
 namespace {
 
-struct Arguments {
+struct ShowArguments {
   std::string blob, key;
   bool json = false;
 };
 
-void run(const Arguments& arguments) {
+void run_show(const ShowArguments& arguments) {
   const BlobFile file = read_blob_file(arguments.blob);
   const bool verifies = arguments.key.empty() || signature_verifies(file.bytes, read_key(arguments.key));
   const nlohmann::ordered_json blob = describe_json(file);
@@ -31,13 +31,13 @@ void run(const Arguments& arguments) {
 }  // namespace
 
 void add_show(CLI::App& app) {
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<ShowArguments>();
   CLI::App* command = app.add_subcommand("show", "Print everything that is in a blob");
   command->add_option("BLOB", arguments->blob, "Parameter blob")->required();
   command->add_flag("--json", arguments->json, "JSON for programs");
   command->add_option("--key", arguments->key, "Public key that the signature must verify under; exit status 1 if not");
   command->footer("Example:\n  mdhcal show result/calibration.blob");
-  command->callback([arguments] { run(*arguments); });
+  command->callback([arguments] { run_show(*arguments); });
 }
 
 }  // namespace mdhcal::offline

@@ -11,12 +11,12 @@ namespace mdhcal::offline {
 
 namespace {
 
-struct Arguments {
+struct SignArguments {
   std::string blob, key, output;
   std::optional<std::uint32_t> counter;
 };
 
-void run(const Arguments& arguments) {
+void run_sign(const SignArguments& arguments) {
   Blob blob = read_blob_file(arguments.blob).bytes;
   sign(blob, key_of(read_key(arguments.key)), arguments.counter);
   write_file(arguments.output, {reinterpret_cast<const char*>(blob.data()), blob.size()});
@@ -25,14 +25,14 @@ void run(const Arguments& arguments) {
 }  // namespace
 
 void add_sign(CLI::App& app) {
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<SignArguments>();
   CLI::App* command = app.add_subcommand("sign", "Sign a blob with Ed25519");
   command->add_option("BLOB", arguments->blob, "Parameter blob, signed or not")->required();
   command->add_option("--key", arguments->key, "Secret key, NAME.key of mdhcal keygen")->required();
   command->add_option("--counter", arguments->counter, "Security counter to sign in; default: the blob's own");
   command->add_option("-o,--output", arguments->output, "Signed blob to write")->required();
   command->footer("Example:\n  mdhcal sign calibration.blob --key metrology.key --counter 3 -o signed.blob");
-  command->callback([arguments] { run(*arguments); });
+  command->callback([arguments] { run_sign(*arguments); });
 }
 
 }  // namespace mdhcal::offline

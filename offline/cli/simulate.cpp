@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <filesystem>
 #include <memory>
-#include <numbers>
 
 #include <nlohmann/json.hpp>
 
@@ -9,6 +8,7 @@
 #include "offline/cli/messages.hpp"
 #include "offline/cli/progress.hpp"
 #include "offline/output/folder.hpp"
+#include "offline/robot/units.hpp"
 #include "offline/simulate/family.hpp"
 #include "offline/simulate/measurement_text.hpp"
 #include "offline/simulate/simulate.hpp"
@@ -17,16 +17,15 @@ namespace mdhcal::offline {
 
 namespace {
 
-constexpr double degree = std::numbers::pi / 180;
 
-struct Arguments {
+struct SimulateArguments {
   std::string robot, directory;
   SimulationOptions options;
   double length_error_mm = 0.5, angle_error_deg = 0.03, noise_mm = 0.02, rotation_noise_deg = 0.003;
   double joint_noise_deg = 0, outlier_mm = 5;
 };
 
-std::string truth_json(const Arguments& arguments, const Simulation& simulation) {
+std::string truth_json(const SimulateArguments& arguments, const Simulation& simulation) {
   nlohmann::ordered_json json;
   json["seed"] = arguments.options.seed;
   json["length_error_mm"] = arguments.length_error_mm;
@@ -43,17 +42,17 @@ std::string truth_json(const Arguments& arguments, const Simulation& simulation)
   return json.dump(2) + '\n';
 }
 
-void run(Arguments arguments) {
+void run_simulate(SimulateArguments arguments) {
   const auto& names = family_names();
   const bool built_in = !std::filesystem::exists(arguments.robot) &&
                         std::find(names.begin(), names.end(), arguments.robot) != names.end();
   const Robot robot = built_in ? family_robot(arguments.robot) : read_robot(arguments.robot);
   SimulationOptions& options = arguments.options;
   options.length_error_m = arguments.length_error_mm * 1e-3;
-  options.angle_error_rad = arguments.angle_error_deg * degree;
+  options.angle_error_rad = arguments.angle_error_deg * rad_per_deg;
   options.noise_m = arguments.noise_mm * 1e-3;
-  options.rotation_noise_rad = arguments.rotation_noise_deg * degree;
-  options.joint_noise_rad = arguments.joint_noise_deg * degree;
+  options.rotation_noise_rad = arguments.rotation_noise_deg * rad_per_deg;
+  options.joint_noise_rad = arguments.joint_noise_deg * rad_per_deg;
   options.outlier_m = arguments.outlier_mm * 1e-3;
   OutputFolder folder(arguments.directory, {"robot.toml", "measurements.csv", "test.csv", "truth.toml", "truth.json"});
   const Simulation simulation = [&] {
@@ -75,7 +74,7 @@ void run(Arguments arguments) {
 }  // namespace
 
 void add_simulate(CLI::App& app) {
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<SimulateArguments>();
   CLI::App* command = app.add_subcommand("simulate", "Write a robot with known errors, its measurements and the truth");
   SimulationOptions& options = arguments->options;
   command->add_option("ROBOT", arguments->robot,
@@ -105,7 +104,7 @@ void add_simulate(CLI::App& app) {
   command->add_flag("--base-frame", options.base_frame, "Measure in the robot's base frame");
   command->add_option("--seed", options.seed, "Seed of the random numbers")->capture_default_str();
   command->footer("Example:\n  mdhcal simulate three-parallel -o simulated --poses 40 --outliers 0.05");
-  command->callback([arguments] { run(*arguments); });
+  command->callback([arguments] { run_simulate(*arguments); });
 }
 
 }  // namespace mdhcal::offline

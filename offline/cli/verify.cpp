@@ -20,7 +20,7 @@ namespace mdhcal::offline {
 
 namespace {
 
-struct Arguments {
+struct VerifyArguments {
   std::string blob, measurements;
   bool refit_base = false, refit_tool = false, json = false;
   std::optional<double> max_mean_mm, max_max_mm;
@@ -50,7 +50,7 @@ void print_line(const std::string& name, const Statistics& s) {
               s.rms, s.p95);
 }
 
-void run(const Arguments& arguments) {
+void run_verify(const VerifyArguments& arguments) {
   const BlobArm blob = read_blob_arm(arguments.blob, PoseOptions{});
   const Robot robot = robot_of(blob.model, arguments.blob);
   const Dataset data = read_measurements(arguments.measurements, robot);
@@ -109,7 +109,7 @@ void run(const Arguments& arguments) {
 }  // namespace
 
 void add_verify(CLI::App& app) {
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<VerifyArguments>();
   CLI::App* command = app.add_subcommand("verify", "Compare a blob's predictions with measurements");
   command->add_option("BLOB", arguments->blob, "Parameter blob")->required();
   command->add_option("MEASUREMENTS", arguments->measurements, "Measurement file (CSV)")->required();
@@ -122,7 +122,7 @@ void add_verify(CLI::App& app) {
   arguments->acceptance.add_to(*command);
   command->add_flag("--json", arguments->json, "Print the figures as JSON");
   command->footer("Example:\n  mdhcal verify result/calibration.blob check.csv --max-mean 0.1 --max-max 0.3");
-  command->callback([arguments] { run(*arguments); });
+  command->callback([arguments] { run_verify(*arguments); });
 }
 
 }  // namespace mdhcal::offline

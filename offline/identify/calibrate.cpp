@@ -214,7 +214,7 @@ Calibration calibrate(const Robot& robot, const Dataset& given, const Calibratio
     out.lambda.rule = "none";
     selection = plain;
     regularized.fit.estimate = outcome.estimate;
-    evaluate(Model(outcome.estimate), data, selection, noise_mm, &regularized.fit.error_norms);
+    evaluate(MeasurementModel(outcome.estimate), data, selection, noise_mm, &regularized.fit.error_norms);
     regularized.fit.scale = robust_scale(regularized.fit.error_norms, 1.0, any_sigma ? 1.0 : noise_mm);
   }
   out.estimate = regularized.fit.estimate;
@@ -243,13 +243,13 @@ Calibration calibrate(const Robot& robot, const Dataset& given, const Calibratio
   }
 
   // Everything that is said about the result comes from one more linearisation, at the result.
-  const Model model(out.estimate);
+  const MeasurementModel model(out.estimate);
   Triangle whole = sum_of(linearise(model, data, selection, setup.layout, noise_mm));
   const ReducedSystem system = reduce_frames(whole.matrix(), setup.layout.frame_columns(), whole.row_count());
   const std::vector<double> x = deviation(out.estimate, setup.layout);
   const SpectralProblem problem =
       penalised_problem(system, Eigen::Map<const Eigen::VectorXd>(x.data(), static_cast<Eigen::Index>(x.size())));
-  Triangle nominal_whole = sum_of(linearise(Model(out.start), data, selection, setup.layout, noise_mm));
+  Triangle nominal_whole = sum_of(linearise(MeasurementModel(out.start), data, selection, setup.layout, noise_mm));
   out.identifiability = identifiability(system, problem, setup.layout, model, out.lambda.lambda, options.seed);
   out.identifiability.before = spectrum_of(
       reduce_frames(nominal_whole.matrix(), setup.layout.frame_columns(), nominal_whole.row_count()));

@@ -111,7 +111,7 @@ Covariance covariance_of(const Dataset& data, const Selection& selection, const 
   return out;
 }
 
-double predicted_position_sd_mm(const Model& model, const Layout& layout, const Covariance& covariance,
+double predicted_position_sd_mm(const MeasurementModel& model, const Layout& layout, const Covariance& covariance,
                                 const double* q, std::size_t target, double* axes_mm) {
   Dataset one;
   one.rows.resize(1);

@@ -11,12 +11,12 @@
 #include "offline/identify/folds.hpp"
 #include "offline/identify/rigid.hpp"
 #include "offline/identify/words.hpp"
+#include "offline/robot/units.hpp"
 
 namespace mdhcal::offline {
 
 namespace {
 
-constexpr double degrees = 57.29577951308232;
 
 // What is regressed: the residuals of the good training rows [mm], each with the value of the quantity.
 struct Sample {
@@ -79,7 +79,7 @@ double share_of(const Calibration& c) {
   Selection selection;
   selection.rows = c.training_rows;
   selection.robust_weight = c.robust_weight;
-  return independent_share(c.training, selection, Model(c.estimate));
+  return independent_share(c.training, selection, MeasurementModel(c.estimate));
 }
 
 void mean_residual(const Calibration& c, const std::function<bool(std::size_t)>& counts, Dependence& out) {
@@ -124,7 +124,7 @@ std::vector<Dependence> direction_dependences(const Calibration& c) {
     turn.prior = 1e-3;
     turns.geometry.push_back(turn);
   }
-  const Model model(c.estimate);
+  const MeasurementModel model(c.estimate);
   const double share = share_of(c);
   std::vector<Dependence> out;
   for (const std::string& word : words) {
@@ -162,7 +162,7 @@ std::vector<std::string> sentences_on(const std::vector<Dependence>& dependences
     } else {
       const auto worst = std::max_element(d.effects.begin(), d.effects.end(),
                                           [](double a, double b) { return std::fabs(a) < std::fabs(b); });
-      text += "some joint stands off by " + number(1e-3 * degrees * std::fabs(*worst)) +
+      text += "some joint stands off by " + number(1e-3 * deg_per_rad * std::fabs(*worst)) +
               " degrees there. Approach from one side, or look for backlash";
     }
     out.push_back(text + "; it is in no parameter.");

@@ -66,8 +66,8 @@ double outlier_error_norm(double scale) {
 SplitFigures judge_rows(const RowJudge& judge, const Dataset& data, const std::vector<std::size_t>& rows, bool test,
                         std::vector<RowResult>& results) {
   SplitFigures out;
-  const Model before(judge.before);
-  const Model after(judge.after);
+  const MeasurementModel before(judge.before);
+  const MeasurementModel after(judge.after);
   std::vector<double> errors_before;
   std::vector<double> errors_after;
   std::vector<double> good_before;

@@ -13,7 +13,7 @@ namespace {
 double trial_squares(const Estimate& estimate, const Dataset& data, const Selection& selection, double noise_mm,
                      std::vector<double>& norms) {
   try {
-    return evaluate(Model(estimate), data, selection, noise_mm, &norms);
+    return evaluate(MeasurementModel(estimate), data, selection, noise_mm, &norms);
   } catch (const Refusal&) {
     return HUGE_VAL;
   }
@@ -60,7 +60,7 @@ Fit fit(const Dataset& data, Selection& selection, const Layout& layout, const E
   const auto columns = frames + parameters;
 
   selection.robust_weight.clear();
-  evaluate(Model(out.estimate), data, selection, control.noise_mm, &out.error_norms);
+  evaluate(MeasurementModel(out.estimate), data, selection, control.noise_mm, &out.error_norms);
   out.scale = robust_scale(out.error_norms, 1.0, floor);
   selection.robust_weight = robust_weights(control.loss, out.error_norms, out.scale);
 
@@ -68,7 +68,7 @@ Fit fit(const Dataset& data, Selection& selection, const Layout& layout, const E
   double parameters_used = 0.0;
   for (out.iterations = 0; out.iterations < control.max_iterations; ++out.iterations) {
     out.lambda = control.lambda >= 0.0 ? control.lambda : out.scale * out.scale;
-    Triangle triangle = sum_of(linearise(Model(out.estimate), data, selection, layout, control.noise_mm));
+    Triangle triangle = sum_of(linearise(MeasurementModel(out.estimate), data, selection, layout, control.noise_mm));
     const Eigen::MatrixXd& matrix = triangle.matrix();
     const std::vector<double> now = deviation(out.estimate, layout);
     const Eigen::VectorXd x0 = Eigen::Map<const Eigen::VectorXd>(now.data(), parameters);

@@ -22,7 +22,7 @@ Eigen::VectorXd deviation_vector(const Estimate& estimate, const Layout& layout)
   return Eigen::Map<const Eigen::VectorXd>(x.data(), static_cast<Eigen::Index>(x.size()));
 }
 
-Estimate solved(const Model& model, const Layout& layout, const ReducedSystem& system,
+Estimate solved(const MeasurementModel& model, const Layout& layout, const ReducedSystem& system,
                 const SpectralProblem& problem, const Eigen::VectorXd& x0, double lambda) {
   const auto frames = static_cast<Eigen::Index>(layout.frame_columns());
   Eigen::VectorXd step(frames + x0.size());
@@ -34,7 +34,7 @@ Estimate solved(const Model& model, const Layout& layout, const ReducedSystem& s
 // Adds the position errors of the good rows of one fold (of all rows if `fold` is negative).
 void add_errors(const Estimate& estimate, const Dataset& data, const Selection& selection, std::int64_t fold,
                 double& sum, std::size_t& count) {
-  const Model model(estimate);
+  const MeasurementModel model(estimate);
   for (std::size_t i = 0; i < selection.rows.size(); ++i) {
     if (fold >= 0 && selection.fold[i] != fold) continue;
     if (!selection.robust_weight.empty() && selection.robust_weight[i] < outlier_weight) continue;
@@ -67,7 +67,7 @@ Folds make_folds(const Dataset& data, const std::vector<std::size_t>& rows, std:
   return folds;
 }
 
-FoldJudge::FoldJudge(const Dataset& data, const Selection& selection, const Layout& layout, const Model& model,
+FoldJudge::FoldJudge(const Dataset& data, const Selection& selection, const Layout& layout, const MeasurementModel& model,
                      const std::vector<Triangle>& parts)
     : data_(data), selection_(selection), layout_(layout), model_(model),
       x0_(deviation_vector(model.estimate(), layout)) {
@@ -97,7 +97,7 @@ double FoldJudge::error_mm(double lambda) const {
   return count > 0 ? sum / static_cast<double>(count) : HUGE_VAL;
 }
 
-double independent_share(const Dataset& data, const Selection& selection, const Model& model) {
+double independent_share(const Dataset& data, const Selection& selection, const MeasurementModel& model) {
   struct Cell {
     std::size_t count = 0;
     double sum[3] = {0, 0, 0};
@@ -142,7 +142,7 @@ double independent_share(const Dataset& data, const Selection& selection, const 
   return (rows - repeats + repeats / effect) / rows;
 }
 
-double training_error_mm(const Dataset& data, const Selection& selection, const Layout& layout, const Model& model,
+double training_error_mm(const Dataset& data, const Selection& selection, const Layout& layout, const MeasurementModel& model,
                          const ReducedSystem& system, const SpectralProblem& problem, double lambda) {
   double sum = 0.0;
   std::size_t count = 0;

@@ -23,7 +23,7 @@ Folds make_folds(const Dataset& data, const std::vector<std::size_t>& rows, std:
 class FoldJudge {
  public:
   /// `parts` are the folds' triangles at `model` with `selection`'s weights.
-  FoldJudge(const Dataset& data, const Selection& selection, const Layout& layout, const Model& model,
+  FoldJudge(const Dataset& data, const Selection& selection, const Layout& layout, const MeasurementModel& model,
             const std::vector<Triangle>& parts);
 
   /// Mean position error [mm] over the rows left out, gross errors (no robust weight) excepted.
@@ -37,7 +37,7 @@ class FoldJudge {
   const Dataset& data_;
   const Selection& selection_;
   const Layout& layout_;
-  const Model& model_;
+  const MeasurementModel& model_;
   Eigen::VectorXd x0_;
   std::vector<Part> part_;
 };
@@ -45,10 +45,10 @@ class FoldJudge {
 /// How much of the rows counts as independent, in (0, 1]: repeats of one configuration (rows of one group and target)
 /// share the errors that the model does not hold, so n repeats inform like n / (1 + (n - 1) r), r being the correlation
 /// of their residuals. 1 without repeats. (the design effect, Kish 1965)
-double independent_share(const Dataset& data, const Selection& selection, const Model& model);
+double independent_share(const Dataset& data, const Selection& selection, const MeasurementModel& model);
 
 /// The same with the training rows themselves as the judge, as in the source.
-double training_error_mm(const Dataset& data, const Selection& selection, const Layout& layout, const Model& model,
+double training_error_mm(const Dataset& data, const Selection& selection, const Layout& layout, const MeasurementModel& model,
                          const ReducedSystem& system, const SpectralProblem& problem, double lambda);
 
 }  // namespace mdhcal::offline

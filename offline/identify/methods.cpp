@@ -21,7 +21,7 @@ Eigen::VectorXd deviation_of(const Estimate& estimate, const Layout& layout) {
 // The unpenalised least-squares step at an estimate.
 Eigen::VectorXd newton_step(const Dataset& data, const Selection& selection, const Layout& layout,
                             const Estimate& estimate, double noise_mm) {
-  Triangle triangle = sum_of(linearise(Model(estimate), data, selection, layout, noise_mm));
+  Triangle triangle = sum_of(linearise(MeasurementModel(estimate), data, selection, layout, noise_mm));
   const ReducedSystem system = reduce_frames(triangle.matrix(), layout.frame_columns(), triangle.row_count());
   const Eigen::VectorXd x0 = deviation_of(estimate, layout);
   Eigen::VectorXd step(static_cast<Eigen::Index>(layout.columns()));
@@ -34,7 +34,7 @@ Eigen::VectorXd newton_step(const Dataset& data, const Selection& selection, con
 
 double squares_at(const Estimate& estimate, const Dataset& data, const Selection& selection, double noise_mm) {
   try {
-    return evaluate(Model(estimate), data, selection, noise_mm);
+    return evaluate(MeasurementModel(estimate), data, selection, noise_mm);
   } catch (const Refusal&) {
     return HUGE_VAL;
   }
@@ -111,7 +111,7 @@ MethodOutcome gradient_descent(const Dataset& data, const Selection& selection, 
   const auto n = static_cast<Eigen::Index>(layout.columns());
   double first_gradient = 0.0;
   for (int pass = 0; pass < linearisations; ++pass) {
-    Triangle triangle = sum_of(linearise(Model(out.estimate), data, selection, layout, noise_mm));
+    Triangle triangle = sum_of(linearise(MeasurementModel(out.estimate), data, selection, layout, noise_mm));
     const Eigen::MatrixXd upper = triangle.matrix().topLeftCorner(n, n);
     Eigen::VectorXd residual = triangle.matrix().col(n).head(n);
     Eigen::VectorXd total = Eigen::VectorXd::Zero(n);
@@ -163,7 +163,7 @@ MethodOutcome extended_kalman_filter(const Dataset& data, const Selection& selec
     double scale[max_row_residuals];
     std::size_t count = 0;
     try {
-      count = Model(out.estimate).residual(data, row, layout, residual, jacobian.data(), columns);
+      count = MeasurementModel(out.estimate).residual(data, row, layout, residual, jacobian.data(), columns);
     } catch (const Refusal&) {
       out.estimate = start;
       out.note = "The filter left the valid range of a geometry; the start is kept.";

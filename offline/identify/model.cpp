@@ -129,23 +129,23 @@ std::size_t residual_count(MeasurementKind kind) {
   return 1;
 }
 
-Model::Model(const Estimate& estimate) : estimate_(estimate) {
+MeasurementModel::MeasurementModel(const Estimate& estimate) : estimate_(estimate) {
   if (make_arm(estimate.geometry, arm_) != Status::ok) {
     throw Refusal("The estimate left the valid range of a geometry: the measurements do not fit this robot.");
   }
 }
 
-Vector3 Model::target_position(const double* q, std::size_t target) const {
+Vector3 MeasurementModel::target_position(const double* q, std::size_t target) const {
   Reach at;
   reach(arm_, q, estimate_.flange_p_m[target], at);
   return transform(estimate_.tracker_T_base, at.base_p_m);
 }
 
-std::size_t Model::residual(const Dataset& data, std::size_t row, double* residual_mm) const {
+std::size_t MeasurementModel::residual(const Dataset& data, std::size_t row, double* residual_mm) const {
   return residual(data, row, Layout{}, residual_mm, nullptr, 0);
 }
 
-std::size_t Model::residual(const Dataset& data, std::size_t row, const Layout& layout, double* residual_mm,
+std::size_t MeasurementModel::residual(const Dataset& data, std::size_t row, const Layout& layout, double* residual_mm,
                             double* jacobian, std::size_t stride) const {
   const Measurement& m = data.rows[row];
   const std::size_t count = residual_count(m.kind);

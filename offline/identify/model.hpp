@@ -44,10 +44,10 @@ inline constexpr double rotation_lever_mm = 100.0;
 std::size_t residual_count(MeasurementKind kind);
 
 /// An estimate prepared for evaluation.
-class Model {
+class MeasurementModel {
  public:
   /// Throws Refusal if the geometry has left the valid range.
-  explicit Model(const Estimate& estimate);
+  explicit MeasurementModel(const Estimate& estimate);
 
   const Estimate& estimate() const { return estimate_; }
 

@@ -105,7 +105,7 @@ double standard_error_norm(const double* scaled_residual, std::size_t count) {
   return std::sqrt(sum) / chi_median(count);
 }
 
-std::vector<Triangle> linearise(const Model& model, const Dataset& data, const Selection& selection,
+std::vector<Triangle> linearise(const MeasurementModel& model, const Dataset& data, const Selection& selection,
                                 const Layout& layout, double noise_mm, std::vector<double>* error_norms) {
   const std::size_t n = layout.columns();
   const bool any_sigma = states_sigma(data);
@@ -129,7 +129,7 @@ std::vector<Triangle> linearise(const Model& model, const Dataset& data, const S
   return triangles;
 }
 
-double evaluate(const Model& model, const Dataset& data, const Selection& selection, double noise_mm,
+double evaluate(const MeasurementModel& model, const Dataset& data, const Selection& selection, double noise_mm,
                 std::vector<double>* error_norms) {
   const bool any_sigma = states_sigma(data);
   double sum = 0.0;

@@ -61,11 +61,11 @@ double standard_error_norm(const double* scaled_residual, std::size_t count);
 
 /// Linearises at the model: one triangle a fold, of rows scaled by residual_scale() and the root of the robust weight.
 /// `error_norms`, if not null, receives standard_error_norm() of each selected row.
-std::vector<Triangle> linearise(const Model& model, const Dataset& data, const Selection& selection,
+std::vector<Triangle> linearise(const MeasurementModel& model, const Dataset& data, const Selection& selection,
                                 const Layout& layout, double noise_mm, std::vector<double>* error_norms = nullptr);
 
 /// Only the residuals: standard_error_norm() of each selected row; returns the weighted sum of squares.
-double evaluate(const Model& model, const Dataset& data, const Selection& selection, double noise_mm,
+double evaluate(const MeasurementModel& model, const Dataset& data, const Selection& selection, double noise_mm,
                 std::vector<double>* error_norms = nullptr);
 
 }  // namespace mdhcal::offline

@@ -9,7 +9,7 @@ namespace mdhcal::offline {
 
 LambdaChoice choose_lambda(const Dataset& data, const Selection& selection, const Layout& layout, const Estimate& at,
                            const RegularizedControl& control, LambdaChoice& corner) {
-  const Model model(at);
+  const MeasurementModel model(at);
   const std::vector<Triangle> parts = linearise(model, data, selection, layout, control.noise_mm);
   Triangle whole = sum_of(parts);
   const ReducedSystem system = reduce_frames(whole.matrix(), layout.frame_columns(), whole.row_count());
@@ -73,7 +73,7 @@ RegularizedFit regularized_fit(const Dataset& data, Selection& selection, const 
   stage.loss = control.robust ? Loss::huber : Loss::squares;
   stage.tolerance = 0.05;  // only a start for the next stage
   out.fit = fit(data, selection, layout, start, stage);
-  stage.independent_share = independent_share(data, selection, Model(out.fit.estimate));
+  stage.independent_share = independent_share(data, selection, MeasurementModel(out.fit.estimate));
   stage.loss = control.robust ? Loss::tukey : Loss::squares;
   stage.tolerance = 1e-2;
   out.fit = fit(data, selection, layout, out.fit.estimate, stage);

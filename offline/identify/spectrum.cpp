@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "offline/identify/factorization.hpp"
+#include "offline/robot/units.hpp"
 #include "offline/simulate/random.hpp"
 
 namespace mdhcal::offline {
@@ -36,7 +37,7 @@ std::string readings_text(const Geometry& geometry, const std::vector<double>& q
     const bool revolute = geometry.joint[i].kind == JointKind::revolute;
     char word[48];
     std::snprintf(word, sizeof word, "%sq%d = %.0f %s", i > 0 ? ", " : "", static_cast<int>(i + 1),
-                  q[static_cast<std::size_t>(i)] * (revolute ? 57.29577951308232 : 1e3), revolute ? "deg" : "mm");
+                  q[static_cast<std::size_t>(i)] * (revolute ? deg_per_rad : mm_per_m), revolute ? "deg" : "mm");
     text += word;
   }
   return text;
@@ -44,7 +45,7 @@ std::string readings_text(const Geometry& geometry, const std::vector<double>& q
 
 // Looks for a pose whose target would move when the parameters move along `direction` (with base and targets following
 // as the present poses make them): such a pose tells the direction.
-std::string advice(const Layout& layout, const Model& model, const Eigen::VectorXd& direction, bool alone,
+std::string advice(const Layout& layout, const MeasurementModel& model, const Eigen::VectorXd& direction, bool alone,
                    std::uint64_t seed) {
   constexpr int trials = 300;
   Random random(seed);
@@ -103,7 +104,7 @@ Spectrum spectrum_of(const ReducedSystem& system) {
 }
 
 Identifiability identifiability(const ReducedSystem& system, const SpectralProblem& problem, const Layout& layout,
-                                const Model& model, double lambda, std::uint64_t seed) {
+                                const MeasurementModel& model, double lambda, std::uint64_t seed) {
   Identifiability out;
   out.after = spectrum_of(system);
   out.frame_unknowns = layout.frame_columns();

@@ -11,6 +11,6 @@ Spectrum spectrum_of(const ReducedSystem& system);
 
 /// Everything but `before`. `seed` draws the trial poses among which one that separates a weak direction is sought.
 Identifiability identifiability(const ReducedSystem& system, const SpectralProblem& problem, const Layout& layout,
-                                const Model& model, double lambda, std::uint64_t seed);
+                                const MeasurementModel& model, double lambda, std::uint64_t seed);
 
 }  // namespace mdhcal::offline

@@ -10,12 +10,12 @@
 #include "offline/identify/registration.hpp"
 #include "offline/identify/rigid.hpp"
 #include "offline/identify/words.hpp"
+#include "offline/robot/units.hpp"
 
 namespace mdhcal::offline {
 
 namespace {
 
-constexpr double degrees = 57.29577951308232;
 
 // A few hundred rows suffice to tell a gross mistake.
 std::vector<std::size_t> thinned(const std::vector<std::size_t>& rows, std::size_t most) {
@@ -42,9 +42,9 @@ std::vector<Mistake> simple_mistakes(const Robot& robot) {
     };
   };
   out.push_back({"the joint angles are in radians but are read as degrees: name the columns q1_rad, q2_rad, ...",
-                 scale_joints(degrees)});
+                 scale_joints(deg_per_rad)});
   out.push_back({"the joint angles are in degrees but are read as radians: name the columns q1_deg, q2_deg, ...",
-                 scale_joints(1.0 / degrees)});
+                 scale_joints(1.0 / deg_per_rad)});
   const auto scale_lengths = [](double factor) {
     return [factor](Robot&, Dataset& d) {
       for (Measurement& m : d.rows) {
@@ -109,7 +109,7 @@ double squares(const std::vector<Vector3>& a, const std::vector<Vector3>& b, con
 
 // The split of the rows for which two separate registrations leave the least.
 Split best_split(const Dataset& data, const std::vector<std::size_t>& rows, const Estimate& estimate) {
-  const Model model(estimate);
+  const MeasurementModel model(estimate);
   std::vector<Vector3> predicted;
   std::vector<Vector3> measured;
   for (std::size_t row : rows) {
@@ -192,8 +192,8 @@ void check_poses(const Robot& robot, const Dataset& data, const std::vector<std:
     seen = true;
     turned = std::max(turned, norm(log_of_rotation(compose(reference, frame))));
   }
-  if (turned * degrees < 0.5) {
-    throw Refusal("The flange has one orientation throughout (it turns by " + number(turned * degrees, 2) +
+  if (turned * deg_per_rad < 0.5) {
+    throw Refusal("The flange has one orientation throughout (it turns by " + number(turned * deg_per_rad, 2) +
                   " degrees at most), so the target point cannot be told from the base frame. Measure with different "
                   "orientations, or state the target in the robot file and use --tool given.");
   }
@@ -261,7 +261,7 @@ std::optional<TrackerMove> find_tracker_move(const Dataset& data, const std::vec
   const Split split = best_split(joined, usable, current.estimate);
   if (!(split.rms_m < HUGE_VAL)) return std::nullopt;
   for (int round = 0; round < 12; ++round) {
-    const Model model(current.estimate);
+    const MeasurementModel model(current.estimate);
     std::vector<Vector3> predicted;
     std::vector<Vector3> measured;
     for (std::size_t i = split.at; i < usable.size(); ++i) {
@@ -283,7 +283,7 @@ std::optional<TrackerMove> find_tracker_move(const Dataset& data, const std::vec
   move.first_row_after = usable[split.at];
   const Vector3 place = data.rows[usable[split.at]].position_m;
   move.shift_mm = 1e3 * norm(minus(transform(total, place), place));
-  move.turn_deg = degrees * norm(log_of_rotation(total));
+  move.turn_deg = deg_per_rad * norm(log_of_rotation(total));
   return move;
 }
 

@@ -22,7 +22,7 @@ struct Covariance {
 
 /// Standard deviation of the target position that `model` predicts at readings q, from the covariance: the root of the
 /// trace of its 3x3 covariance [mm], and, if not null, the standard deviation along each tracker axis.
-double predicted_position_sd_mm(const Model& model, const Layout& layout, const Covariance& covariance,
+double predicted_position_sd_mm(const MeasurementModel& model, const Layout& layout, const Covariance& covariance,
                                 const double* q, std::size_t target, double* axes_mm = nullptr);
 
 }  // namespace mdhcal::offline

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "offline/output/blob_describe.hpp"
+#include "offline/robot/units.hpp"
 
 #include <array>
 #include <nlohmann/json.hpp>
-#include <numbers>
 
 #include "mdhcal/self_test.hpp"
 
@@ -13,8 +13,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr double mm = 1e3;
-constexpr double deg = 180.0 / std::numbers::pi;
 
 const char* kind_name(JointKind kind) { return kind == JointKind::revolute ? "revolute" : "prismatic"; }
 
@@ -37,18 +35,18 @@ std::string hexadecimal(const std::uint8_t* bytes, std::size_t size) {
 }
 
 Json link_json(const Link& link) {
-  return {{"alpha_deg", link.alpha_rad * deg},
-          {"a_mm", link.a_m * mm},
-          {"theta_deg", link.theta_rad * deg},
-          {"d_mm", link.d_m * mm},
-          {"beta_deg", link.beta_rad * deg}};
+  return {{"alpha_deg", link.alpha_rad * deg_per_rad},
+          {"a_mm", link.a_m * mm_per_m},
+          {"theta_deg", link.theta_rad * deg_per_rad},
+          {"d_mm", link.d_m * mm_per_m},
+          {"beta_deg", link.beta_rad * deg_per_rad}};
 }
 
 Link minus(const Link& a, const Link& b) {
   return {a.alpha_rad - b.alpha_rad, a.a_m - b.a_m, a.theta_rad - b.theta_rad, a.d_m - b.d_m, a.beta_rad - b.beta_rad};
 }
 
-Json point_json(const double (&p)[3]) { return {p[0] * mm, p[1] * mm, p[2] * mm}; }
+Json point_json(const double (&p)[3]) { return {p[0] * mm_per_m, p[1] * mm_per_m, p[2] * mm_per_m}; }
 
 Json pose_json(const Pose<double>& pose) {
   return {{"xyz_mm", point_json(pose.position_m)}, {"quaternion_wxyz", pose.quaternion}};
@@ -61,7 +59,7 @@ Json joints_json(const Model& model) {
   for (std::int32_t i = 0; i < model.geometry.joint_count; ++i) {
     const Joint& joint = model.geometry.joint[i];
     const bool turns = joint.kind == JointKind::revolute;
-    const double unit = turns ? deg : mm;
+    const double unit = turns ? deg_per_rad : mm_per_m;
     Json coupling = Json::array();
     for (std::int32_t j = 0; j < model.geometry.joint_count; ++j) coupling.push_back(joint.coupling[j]);
     links.push_back({{"joint", kind_name(joint.kind)},
@@ -91,8 +89,8 @@ Json provenance_json(const BlobProvenance& from) {
   }
   if (from.has_held_out == 1) {
     out["held_out"] = {{"pose_count", from.held_out_count},
-                       {"before", {{"mean_mm", from.mean_before_m * mm}, {"max_mm", from.max_before_m * mm}}},
-                       {"after", {{"mean_mm", from.mean_after_m * mm}, {"max_mm", from.max_after_m * mm}}}};
+                       {"before", {{"mean_mm", from.mean_before_m * mm_per_m}, {"max_mm", from.max_before_m * mm_per_m}}},
+                       {"after", {{"mean_mm", from.mean_after_m * mm_per_m}, {"max_mm", from.max_after_m * mm_per_m}}}};
   }
   return out;
 }
@@ -156,10 +154,10 @@ Json describe_json(const BlobFile& file) {
           {"targets", targets},
           {"posture_family", family_name(model.family)},
           {"tolerances",
-           {{"position_mm", model.tolerances.position_m * mm},
-            {"rotation_deg", model.tolerances.rotation_rad * deg},
-            {"float_position_mm", static_cast<double>(model.tolerances.float_position_m) * mm},
-            {"float_rotation_deg", static_cast<double>(model.tolerances.float_rotation_rad) * deg}}},
+           {{"position_mm", model.tolerances.position_m * mm_per_m},
+            {"rotation_deg", model.tolerances.rotation_rad * deg_per_rad},
+            {"float_position_mm", static_cast<double>(model.tolerances.float_position_m) * mm_per_m},
+            {"float_rotation_deg", static_cast<double>(model.tolerances.float_rotation_rad) * deg_per_rad}}},
           {"provenance", provenance_json(model.provenance)},
           {"security_counter", model.security_counter},
           {"signature",

@@ -11,6 +11,7 @@
 #include "offline/error.hpp"
 #include "offline/output/blob_describe.hpp"
 #include "offline/output/text_table.hpp"
+#include "offline/robot/units.hpp"
 
 namespace mdhcal::offline {
 
@@ -18,8 +19,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr double mm = 1e3;
-constexpr double deg = 180.0 / std::numbers::pi;
 constexpr int sample_count = 1000;
 
 bool same(double a, double b) { return !(a < b) && !(a > b); }
@@ -39,23 +38,23 @@ class Changes {
 };
 
 void link(Changes& changes, const std::string& prefix, const std::string& number, const Link& a, const Link& b) {
-  changes.number(prefix + "alpha" + number + "_deg", a.alpha_rad, b.alpha_rad, deg);
-  changes.number(prefix + "a" + number + "_mm", a.a_m, b.a_m, mm);
-  changes.number(prefix + "theta" + number + "_deg", a.theta_rad, b.theta_rad, deg);
-  changes.number(prefix + "d" + number + "_mm", a.d_m, b.d_m, mm);
-  changes.number(prefix + "beta" + number + "_deg", a.beta_rad, b.beta_rad, deg);
+  changes.number(prefix + "alpha" + number + "_deg", a.alpha_rad, b.alpha_rad, deg_per_rad);
+  changes.number(prefix + "a" + number + "_mm", a.a_m, b.a_m, mm_per_m);
+  changes.number(prefix + "theta" + number + "_deg", a.theta_rad, b.theta_rad, deg_per_rad);
+  changes.number(prefix + "d" + number + "_mm", a.d_m, b.d_m, mm_per_m);
+  changes.number(prefix + "beta" + number + "_deg", a.beta_rad, b.beta_rad, deg_per_rad);
 }
 
 void pose(Changes& changes, const std::string& name, const Pose<double>& a, const Pose<double>& b) {
   const char* axes[4] = {"x", "y", "z", ""};
-  for (std::size_t k = 0; k < 3; ++k) changes.number(name + '_' + axes[k] + "_mm", a.position_m[k], b.position_m[k], mm);
+  for (std::size_t k = 0; k < 3; ++k) changes.number(name + '_' + axes[k] + "_mm", a.position_m[k], b.position_m[k], mm_per_m);
   const char* parts[4] = {"_qw", "_qx", "_qy", "_qz"};
   for (std::size_t k = 0; k < 4; ++k) changes.number(name + parts[k], a.quaternion[k], b.quaternion[k], 1.0);
 }
 
 void joint(Changes& changes, const std::string& number, const Joint& a, const Joint& b) {
   const bool turns = a.kind == JointKind::revolute;
-  const double unit = turns ? deg : mm;
+  const double unit = turns ? deg_per_rad : mm_per_m;
   const char* suffix = turns ? "_deg" : "_mm";
   changes.value("sign" + number, a.sign, b.sign);
   changes.value("min" + number + suffix, a.has_min == 1 ? Json(a.min * unit) : Json(), b.has_min == 1 ? Json(b.min * unit) : Json());
@@ -80,7 +79,7 @@ void targets(Changes& changes, const Model& a, const Model& b) {
     }
     const char* axes[3] = {"_x_mm", "_y_mm", "_z_mm"};
     for (std::size_t k = 0; k < 3; ++k) {
-      changes.number(name + axes[k], a.target[i].flange_p_m[k], other->flange_p_m[k], mm);
+      changes.number(name + axes[k], a.target[i].flange_p_m[k], other->flange_p_m[k], mm_per_m);
     }
   }
   for (std::int32_t i = 0; i < b.target_count; ++i) {
@@ -110,7 +109,7 @@ Json movement(const Model& a, const Model& b) {
     Pose<double> pose_a{};
     Pose<double> pose_b{};
     if (forward(arm_a, q.data(), pose_a) != Status::ok || forward(arm_b, q.data(), pose_b) != Status::ok) return nullptr;
-    position_mm.push_back(mm * std::hypot(pose_b.position_m[0] - pose_a.position_m[0],
+    position_mm.push_back(mm_per_m * std::hypot(pose_b.position_m[0] - pose_a.position_m[0],
                                           pose_b.position_m[1] - pose_a.position_m[1],
                                           pose_b.position_m[2] - pose_a.position_m[2]));
     // |qa - qb| and |qa + qb| are the sine and cosine of a quarter of the angle, twice.
@@ -120,7 +119,7 @@ Json movement(const Model& a, const Model& b) {
       difference += std::pow(pose_a.quaternion[k] - pose_b.quaternion[k], 2);
       sum += std::pow(pose_a.quaternion[k] + pose_b.quaternion[k], 2);
     }
-    rotation_deg.push_back(deg * 4 * std::atan2(std::sqrt(std::min(difference, sum)), std::sqrt(std::max(difference, sum))));
+    rotation_deg.push_back(deg_per_rad * 4 * std::atan2(std::sqrt(std::min(difference, sum)), std::sqrt(std::max(difference, sum))));
   }
   const auto mean = [](const std::vector<double>& values) {
     double sum = 0;
@@ -155,8 +154,8 @@ Json difference_json(const Model& a, const Model& b) {
   changes.value("pose_count", a.provenance.pose_count, b.provenance.pose_count);
   changes.value("security_counter", a.security_counter, b.security_counter);
   changes.value("signed", a.authentication.algorithm != 0, b.authentication.algorithm != 0);
-  changes.number("held_out_mean_after_mm", a.provenance.mean_after_m, b.provenance.mean_after_m, mm);
-  changes.number("held_out_max_after_mm", a.provenance.max_after_m, b.provenance.max_after_m, mm);
+  changes.number("held_out_mean_after_mm", a.provenance.mean_after_m, b.provenance.mean_after_m, mm_per_m);
+  changes.number("held_out_max_after_mm", a.provenance.max_after_m, b.provenance.max_after_m, mm_per_m);
   for (std::int32_t i = 0; i < a.geometry.joint_count; ++i) {
     const std::string number = std::to_string(i + 1);
     joint(changes, number, a.geometry.joint[i], b.geometry.joint[i]);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "offline/output/result_json.hpp"
+#include "offline/robot/units.hpp"
 
 #include <cmath>
 
@@ -11,7 +12,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr double degrees = 57.29577951308232;
 
 Json finite(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 
@@ -47,7 +47,7 @@ Json spectrum(const Spectrum& s) {
 Json parameter(const EstimatedParameter& p) {
   const bool angle = is_angle(p.id);
   const std::string unit = angle ? "_deg" : "_mm";
-  const double factor = angle ? degrees : 1e3;
+  const double factor = angle ? deg_per_rad : 1e3;
   Json json;
   json["name"] = name(p.id);
   json["unit"] = angle ? "deg" : "mm";
@@ -89,7 +89,7 @@ Json bootstrap_json(const Calibration& c, const Bootstrap& b) {
   Json json = {{"resamples", b.resamples}, {"parameters", Json::array()}};
   for (std::size_t p = 0; p < c.parameters.size(); ++p) {
     const bool angle = is_angle(c.parameters[p].id);
-    const double factor = angle ? degrees : 1e3;
+    const double factor = angle ? deg_per_rad : 1e3;
     json["parameters"].push_back({{"name", name(c.parameters[p].id)},
                                   {"unit", angle ? "deg" : "mm"},
                                   {"standard_deviation", finite(b.standard_deviation[p] * factor)},

@@ -108,7 +108,7 @@ Experiment experiment_of(const Robot& robot, const SetupOptions& options, const 
   std::vector<std::size_t> rows(data.rows.size());
   std::iota(rows.begin(), rows.end(), 0u);
   const Setup setup = make_setup(robot, data, rows, options);
-  const Model model(setup.nominal);
+  const MeasurementModel model(setup.nominal);
   const auto columns = static_cast<Eigen::Index>(setup.layout.columns());
   const auto frames = static_cast<Eigen::Index>(setup.layout.frame_columns());
 

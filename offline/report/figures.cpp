@@ -99,7 +99,7 @@ std::optional<LambdaPicture> lambda_picture(const Calibration& calibration) {
   control.sigma = states_sigma(data) ? 1.0 : calibration.noise_mm;
 
   Triangle triangle = sum_of(
-      linearise(Model(calibration.estimate), data, selection, calibration.layout, control.noise_mm));
+      linearise(MeasurementModel(calibration.estimate), data, selection, calibration.layout, control.noise_mm));
   const std::vector<double> x0 = deviation(calibration.estimate, calibration.layout);
   LambdaPicture picture;
   picture.problem = penalised_problem(
@@ -136,7 +136,7 @@ std::optional<LambdaPicture> lambda_picture(const Calibration& calibration) {
 PredictedAccuracy predicted_accuracy(const Calibration& calibration) {
   PredictedAccuracy out;
   if (calibration.covariance.size == 0) return out;
-  const Model model(calibration.estimate);
+  const MeasurementModel model(calibration.estimate);
   const Frame<double> base_T_tracker = inverted(calibration.estimate.tracker_T_base);
   Random random(1);
   std::vector<double> sorted;

@@ -4,17 +4,16 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <numbers>
 
 #include "offline/report/figures.hpp"
 #include "offline/report/html.hpp"
 #include "offline/robot/rotation.hpp"
+#include "offline/robot/units.hpp"
 
 namespace mdhcal::offline {
 
 namespace {
 
-constexpr double degrees = 180 / std::numbers::pi;
 
 using Rows = std::vector<std::vector<std::string>>;
 
@@ -57,7 +56,7 @@ std::string parameter_section(const Calibration& c) {
              "from the measurements"}};
   for (const EstimatedParameter& p : c.parameters) {
     const bool angle = is_angle(p.id);
-    const double factor = angle ? degrees : 1e3;
+    const double factor = angle ? deg_per_rad : 1e3;
     rows.push_back({"<span class=\"nowrap\">" + name(p.id) + (angle ? " [deg]" : " [mm]") + "</span>" +
                         (p.identifiable ? "" : "<span class=\"flag\">not identifiable from these poses</span>"),
                     number_cell(p.nominal * factor, 4),
@@ -102,14 +101,14 @@ std::string frames_section(const Calibration& c) {
   const Pose<double> base = pose_of(c.estimate.tracker_T_base);
   const auto turn = rotation_vector_of({base.quaternion[0], base.quaternion[1], base.quaternion[2], base.quaternion[3]});
   rows.push_back({c.layout.base ? "tracker_T_base, fitted" : "tracker_T_base, given", number_cell(1e3 * base.position_m[0], 4),
-                  number_cell(1e3 * base.position_m[1], 4), number_cell(1e3 * base.position_m[2], 4), number_cell(degrees * turn[0], 5),
-                  number_cell(degrees * turn[1], 5), number_cell(degrees * turn[2], 5)});
+                  number_cell(1e3 * base.position_m[1], 4), number_cell(1e3 * base.position_m[2], 4), number_cell(deg_per_rad * turn[0], 5),
+                  number_cell(deg_per_rad * turn[1], 5), number_cell(deg_per_rad * turn[2], 5)});
   const auto sd = [&](std::size_t column) {
     return column < c.covariance.size ? std::sqrt(std::max(0.0, c.covariance.at(column, column))) : std::nan("");
   };
   if (c.layout.base && c.covariance.size > 0) {
-    rows.push_back({"standard deviation", number_cell(sd(3), 4), number_cell(sd(4), 4), number_cell(sd(5), 4), number_cell(1e-3 * degrees * sd(0), 5),
-                    number_cell(1e-3 * degrees * sd(1), 5), number_cell(1e-3 * degrees * sd(2), 5)});
+    rows.push_back({"standard deviation", number_cell(sd(3), 4), number_cell(sd(4), 4), number_cell(sd(5), 4), number_cell(1e-3 * deg_per_rad * sd(0), 5),
+                    number_cell(1e-3 * deg_per_rad * sd(1), 5), number_cell(1e-3 * deg_per_rad * sd(2), 5)});
   }
   for (std::size_t t = 0; t < c.estimate.flange_p_m.size(); ++t) {
     const Vector3& p = c.estimate.flange_p_m[t];

@@ -16,13 +16,13 @@ namespace mdhcal::offline {
 
 namespace {
 
-std::string quoted(std::string_view text) { return '"' + std::string(text) + '"'; }
+std::string in_quotes(std::string_view text) { return '"' + std::string(text) + '"'; }
 
 std::string kind_of(const toml::node& node) {
   switch (node.type()) {
     case toml::node_type::table: return "a table";
     case toml::node_type::array: return "an array";
-    case toml::node_type::string: return "the text " + quoted(node.as_string()->get());
+    case toml::node_type::string: return "the text " + in_quotes(node.as_string()->get());
     case toml::node_type::boolean: return node.as_boolean()->get() ? "true" : "false";
     case toml::node_type::integer: return std::to_string(node.as_integer()->get());
     case toml::node_type::floating_point: return shortest_decimal(node.as_floating_point()->get());
@@ -48,7 +48,7 @@ class Reader {
       if (std::find(keys.begin(), keys.end(), key.str()) != keys.end()) continue;
       std::string expected;
       for (const std::string_view known : keys) expected += (expected.empty() ? "" : ", ") + std::string(known);
-      fail(key.source(), "Unknown key " + quoted(key.str()) + (where.empty() ? "" : " in " + where) + "; expected " +
+      fail(key.source(), "Unknown key " + in_quotes(key.str()) + (where.empty() ? "" : " in " + where) + "; expected " +
                              expected + ".");
     }
   }
@@ -71,7 +71,7 @@ class Reader {
     return text;
   }
 
-  static std::string named(std::string_view key) { return "Key " + quoted(key) + ": found "; }
+  static std::string named(std::string_view key) { return "Key " + in_quotes(key) + ": found "; }
 
   // One of the words; their index. The first is the default.
   std::size_t choice(const toml::table& table, std::string_view key,
@@ -79,7 +79,7 @@ class Reader {
     const toml::node* node = table.get(key);
     if (node == nullptr) return 0;
     std::string expected;
-    for (const std::string_view word : words) expected += (expected.empty() ? "" : " or ") + quoted(word);
+    for (const std::string_view word : words) expected += (expected.empty() ? "" : " or ") + in_quotes(word);
     if (node->is_string()) {
       const auto found = std::find(words.begin(), words.end(), node->as_string()->get());
       if (found != words.end()) return static_cast<std::size_t>(found - words.begin());
@@ -116,13 +116,13 @@ class Reader {
   double required(const toml::table& table, const std::string& where, std::string_view key, const Unit& unit,
                   double bound) const {
     const toml::node* node = table.get(key);
-    if (node == nullptr) fail(table.source(), where + " has no key " + quoted(key) + "; expected a number.");
+    if (node == nullptr) fail(table.source(), where + " has no key " + in_quotes(key) + "; expected a number.");
     return number(*node, key, unit, bound);
   }
 
   std::int32_t joint_number(const toml::table& table, const std::string& where, std::string_view key) const {
     const toml::node* node = table.get(key);
-    if (node == nullptr) fail(table.source(), where + " has no key " + quoted(key) + "; expected a joint's number.");
+    if (node == nullptr) fail(table.source(), where + " has no key " + in_quotes(key) + "; expected a joint's number.");
     if (!node->is_integer() || node->as_integer()->get() < 1 || node->as_integer()->get() > robot_.geometry.joint_count) {
       fail(node->source(), named(key) + kind_of(*node) + "; expected the number of a joint, 1 to " +
                                std::to_string(robot_.geometry.joint_count) + ".");
@@ -274,7 +274,7 @@ void Reader::read_links() {
     robot_.nominal[i] = robot_.geometry.link[i];
     for (const std::string_view key : {"beta", "nominal"}) {
       if (standard_ && table.contains(key)) {
-        fail(table.get(key)->source(), "Found the key " + quoted(key) + " in " + where +
+        fail(table.get(key)->source(), "Found the key " + in_quotes(key) + " in " + where +
                                            " of a file in the standard convention; expected it only with convention = "
                                            "\"modified\".");
       }
@@ -320,7 +320,7 @@ void Reader::read_targets() {
       if (other.name == target.name) {
         const toml::node* name = table.get("name");
         fail(name != nullptr ? name->source() : table.source(),
-             where + " repeats the name " + quoted(target.name) + "; expected each target once.");
+             where + " repeats the name " + in_quotes(target.name) + "; expected each target once.");
       }
     }
     robot_.targets.push_back(std::move(target));
@@ -340,7 +340,7 @@ void Reader::read_priors() {
     const bool in_range = number_text.size() == 1 && number_text[0] >= '1' &&
                           number_text[0] - '0' <= robot_.geometry.joint_count;
     if (!(is_length || is_angle) || !in_range) {
-      fail(key.source(), "Unknown key " + quoted(name) +
+      fail(key.source(), "Unknown key " + in_quotes(name) +
                              " in [prior]; expected alpha, a, d, theta or beta with the number of a link, 1 to " +
                              std::to_string(robot_.geometry.joint_count) + ".");
     }

@@ -9,7 +9,7 @@ namespace mdhcal::offline {
 
 namespace {
 
-std::string quoted(const std::string& text) {
+std::string toml_string(const std::string& text) {
   std::string out = "\"";
   for (const char c : text) {
     if (c == '"' || c == '\\') out += '\\';
@@ -33,11 +33,11 @@ class Writer {
         angle_(robot.angle_in_deg ? degree : radian) {}
 
   std::string write() {
-    line("name", quoted(robot_.name));
-    if (!robot_.serial.empty()) line("serial", quoted(robot_.serial));
+    line("name", toml_string(robot_.name));
+    if (!robot_.serial.empty()) line("serial", toml_string(robot_.serial));
     line("convention", "\"modified\"");
-    line("length_unit", quoted(std::string(length_.name)));
-    line("angle_unit", quoted(std::string(angle_.name)));
+    line("length_unit", toml_string(std::string(length_.name)));
+    line("angle_unit", toml_string(std::string(angle_.name)));
     const auto count = static_cast<std::size_t>(robot_.geometry.joint_count);
     for (std::size_t i = 0; i < count; ++i) write_link(i);
     for (std::size_t of = 0; of < count; ++of) {
@@ -51,7 +51,7 @@ class Writer {
     if (robot_.tracker_T_base) write_pose("base", *robot_.tracker_T_base);
     for (const TargetPoint& target : robot_.targets) {
       text_ += "[[target]]\n";
-      line("name", quoted(target.name));
+      line("name", toml_string(target.name));
       line("xyz", array_of(target.flange_p_m, length_));
     }
     if (!robot_.prior.empty()) text_ += "[prior]\n";

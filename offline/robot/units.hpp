@@ -21,6 +21,11 @@ struct Unit {
 };
 
 inline constexpr double pi = 3.14159265358979323846;
+/// For what is shown or given once; what is read back bit by bit goes through Unit.
+inline constexpr double mm_per_m = 1e3;
+inline constexpr double deg_per_rad = 180.0 / pi;
+inline constexpr double rad_per_deg = pi / 180.0;
+
 inline constexpr Unit metre{"m", 1.0, 1.0};
 inline constexpr Unit millimetre{"mm", 1.0, 1000.0};
 inline constexpr Unit radian{"rad", 1.0, 1.0};

@@ -1,15 +1,14 @@
 // SPDX-License-Identifier: MIT
 #include "offline/simulate/family.hpp"
 
-#include <numbers>
 
 #include "offline/error.hpp"
+#include "offline/robot/units.hpp"
 
 namespace mdhcal::offline {
 
 namespace {
 
-constexpr double degree = std::numbers::pi / 180;
 
 struct Row {
   double alpha_deg, a_mm, theta_deg, d_mm, limit_deg;
@@ -59,11 +58,11 @@ Robot family_robot(const std::string& name) {
     robot.geometry.last_T_flange.quaternion[0] = 1;
     for (std::size_t i = 0; i < family.rows.size(); ++i) {
       const Row& row = family.rows[i];
-      robot.geometry.link[i] = {row.alpha_deg * degree, row.a_mm * 1e-3, row.theta_deg * degree, row.d_mm * 1e-3, 0};
+      robot.geometry.link[i] = {row.alpha_deg * rad_per_deg, row.a_mm * 1e-3, row.theta_deg * rad_per_deg, row.d_mm * 1e-3, 0};
       Joint& joint = robot.geometry.joint[i];
       joint.sign = 1;
       joint.has_min = joint.has_max = 1;
-      joint.max = row.limit_deg * degree;
+      joint.max = row.limit_deg * rad_per_deg;
       joint.min = -joint.max;
       robot.nominal[i] = robot.geometry.link[i];
     }

@@ -9,13 +9,14 @@
 
 #include "mdhcal/kinematics.hpp"
 #include "offline/error.hpp"
+#include "offline/robot/units.hpp"
 #include "offline/simulate/random.hpp"
 
 namespace mdhcal::offline {
 
 namespace {
 
-constexpr double parallel_rad = 5 * std::numbers::pi / 180;
+constexpr double parallel_rad = 5 * rad_per_deg;
 
 void require(bool holds, const char* message) {
   if (!holds) throw InputError(message);

@@ -127,7 +127,7 @@ TEST(Monitor, UnchangedCalibratedArmsPassAndAChangedOneIsFound) {
     changed.geometry.link[2].theta_rad += change_rad;
     changed.tracker_T_base = frame_of(*s.truth.tracker_T_base);
     changed.flange_p_m = {s.truth.targets[0].flange_p_m};
-    const Model identified(c.estimate), now(changed);
+    const MeasurementModel identified(c.estimate), now(changed);
     Random noise(options.seed);
     double mean_mm = 0;
     std::vector<Vector3> predicted, measured, measured_now;

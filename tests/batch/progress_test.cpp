@@ -46,7 +46,7 @@ std::string on_a_terminal(bool enabled) {
   }
   std::string shown;
   char buffer[256];
-  for (ssize_t count = 0; (count = read(screen, buffer, sizeof buffer)) > 0;) shown.append(buffer, static_cast<std::size_t>(count));
+  for (ssize_t count = 0; (count = ::read(screen, buffer, sizeof buffer)) > 0;) shown.append(buffer, static_cast<std::size_t>(count));
   close(screen);
   waitpid(child, nullptr, 0);
   return shown;

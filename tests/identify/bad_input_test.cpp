@@ -154,7 +154,7 @@ TEST(BadInput, ReflectorOnTheLastAxis) {
   Estimate truth;
   truth.geometry = s.truth.geometry;
   truth.flange_p_m = {{0.0, 0.0, 0.1}};
-  const Model real(truth);
+  const MeasurementModel real(truth);
   for (Measurement& m : data.rows) m.position_m = real.target_position(m.q.data(), 0);
   const Calibration c = calibrate(s.nominal, data, {});
   bool named = false;

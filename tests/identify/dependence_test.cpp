@@ -75,7 +75,7 @@ TEST(Dependence, AnArmThatGrowsWithTheTemperatureIsSeen) {
 
 TEST(Dependence, BacklashIsSeenInTheDirectionOfApproach) {
   Simulation s = recorded(4);
-  const Model real = truth_model(s);
+  const MeasurementModel real = truth_model(s);
   for (std::size_t i = 0; i < s.train.rows.size(); ++i) {
     Measurement& m = s.train.rows[i];
     auto behind = m.q;

@@ -71,7 +71,7 @@ double difference(const Case& c, std::size_t row, std::size_t column, std::size_
     for (int side = 0; side < 2; ++side) {
       std::vector<double> step(c.layout.columns(), 0.0);
       step[column] = side == 0 ? h : -h;
-      Model(moved(c.estimate, c.layout, step.data())).residual(c.data, row, r[side]);
+      MeasurementModel(moved(c.estimate, c.layout, step.data())).residual(c.data, row, r[side]);
     }
     return (r[0][component] - r[1][component]) / (2 * h);
   };
@@ -82,7 +82,7 @@ double difference(const Case& c, std::size_t row, std::size_t column, std::size_
 TEST(Jacobian, AllColumnsAndKindsAgreeWithCentralDifferences) {
   for (std::uint64_t seed = 1; seed <= 40; ++seed) {
     const Case c = random_case(seed);
-    const Model model(c.estimate);
+    const MeasurementModel model(c.estimate);
     const std::size_t n = c.layout.columns();
     std::vector<double> jacobian(max_row_residuals * n);
     for (std::size_t row = 0; row < c.data.rows.size(); ++row) {
@@ -104,7 +104,7 @@ TEST(Jacobian, AllColumnsAndKindsAgreeWithCentralDifferences) {
 
 TEST(Jacobian, ResidualWithoutJacobianIsTheSame) {
   const Case c = random_case(7);
-  const Model model(c.estimate);
+  const MeasurementModel model(c.estimate);
   std::vector<double> jacobian(max_row_residuals * c.layout.columns());
   for (std::size_t row = 0; row < c.data.rows.size(); ++row) {
     double with[max_row_residuals];

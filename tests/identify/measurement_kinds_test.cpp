@@ -30,22 +30,17 @@ Calibration calibrated(const Simulation& s, const std::string& text, const Calib
   return calibrate(s.nominal, parse_dataset(text, "measured.csv", s.nominal), options);
 }
 
-bool noted(const Calibration& c, const std::string& part) {
-  return std::any_of(c.notes.begin(), c.notes.end(),
-                     [&](const std::string& note) { return note.find(part) != std::string::npos; });
-}
-
 // Mean error [mm] of the distance that an estimate predicts between the targets of two random poses.
 double distance_error_mm(const Simulation& s, const Estimate& estimate) {
-  const Model real = truth_model(s);
-  const Model model(estimate);
+  const MeasurementModel real = truth_model(s);
+  const MeasurementModel model(estimate);
   Random random(77);
   double sum = 0;
   constexpr int pairs = 500;
   for (int i = 0; i < pairs; ++i) {
     const auto a = random_readings(s.truth.geometry, random);
     const auto b = random_readings(s.truth.geometry, random);
-    const auto length = [&](const Model& m) {
+    const auto length = [&](const MeasurementModel& m) {
       return norm(minus(m.target_position(a.data(), 0), m.target_position(b.data(), 0)));
     };
     sum += 1e3 * std::fabs(length(model) - length(real)) / pairs;
@@ -55,7 +50,7 @@ double distance_error_mm(const Simulation& s, const Estimate& estimate) {
 
 // Rows 0, 2, 4, ... hold the length to the row behind, which states its joints only.
 TableColumns ball_bar_columns(const Simulation& s, Random& random, double noise_m) {
-  const Model real = truth_model(s);
+  const MeasurementModel real = truth_model(s);
   std::vector<std::string> lengths(s.train.rows.size());
   for (std::size_t i = 0; i + 1 < lengths.size(); i += 2) {
     const Vector3 span = minus(real.target_position(s.train.rows[i].q.data(), 0),
@@ -82,7 +77,7 @@ TEST(Distances, ABallBarAloneTellsTheArmButNotItsBase) {
 
 TEST(Distances, DrawWiresToThreeFixedEndsFindTheBaseToo) {
   const Simulation s = simulated(240, 4);
-  const Model real = truth_model(s);
+  const MeasurementModel real = truth_model(s);
   Random random(6);
   const Vector3 foot = transform(truth_model(s).estimate().tracker_T_base, {0.0, 0.0, 0.0});
   const Vector3 ends[] = {plus(foot, {2.0, 0.3, 0.1}), plus(foot, {-0.7, 1.9, 0.4}), plus(foot, {0.2, -0.6, 2.5})};

@@ -26,11 +26,6 @@ const EstimatedParameter* find(const Calibration& c, const std::string& word) {
   return found == c.parameters.end() ? nullptr : &*found;
 }
 
-bool noted(const Calibration& c, const std::string& part) {
-  return std::any_of(c.notes.begin(), c.notes.end(),
-                     [&](const std::string& note) { return note.find(part) != std::string::npos; });
-}
-
 // The robot file of a simulated arm with [prior] added, in the file's units.
 Robot with_prior(Robot robot, const std::string& prior) {
   return parse_robot(write_robot(robot) + "[prior]\n" + prior, "robot.toml");

@@ -39,20 +39,20 @@ std::vector<std::size_t> add_gross_errors(Dataset& data, double share, std::uint
   return rows;
 }
 
-Model truth_model(const Simulation& simulation) {
+MeasurementModel truth_model(const Simulation& simulation) {
   Estimate truth;
   truth.geometry = simulation.truth.geometry;
   if (simulation.truth.tracker_T_base) truth.tracker_T_base = frame_of(*simulation.truth.tracker_T_base);
   truth.flange_p_m.push_back(simulation.truth.targets.empty() ? *simulation.truth.tool_p_m
                                                               : simulation.truth.targets.front().flange_p_m);
-  return Model(truth);
+  return MeasurementModel(truth);
 }
 
 double distance_from_truth_mm(const Simulation& simulation, const Calibration& calibration, std::size_t count,
                               std::uint64_t seed) {
   const Geometry& geometry = simulation.truth.geometry;
-  const Model real = truth_model(simulation);
-  const Model corrected(calibration.estimate);
+  const MeasurementModel real = truth_model(simulation);
+  const MeasurementModel corrected(calibration.estimate);
   Random random(seed);
   double sum = 0.0;
   for (std::size_t i = 0; i < count; ++i) {
@@ -65,6 +65,11 @@ double distance_from_truth_mm(const Simulation& simulation, const Calibration& c
     sum += 1e3 * norm(minus(corrected.target_position(q, 0), real.target_position(q, 0)));
   }
   return sum / static_cast<double>(count);
+}
+
+bool noted(const Calibration& calibration, const std::string& part) {
+  return std::any_of(calibration.notes.begin(), calibration.notes.end(),
+                     [&](const std::string& note) { return note.find(part) != std::string::npos; });
 }
 
 Coverage coverage(const Simulation& simulation, const Calibration& calibration) {

@@ -18,12 +18,15 @@ offline::SimulationOptions arm_options(std::uint64_t seed);
 std::vector<std::size_t> add_gross_errors(offline::Dataset& data, double share, std::uint64_t seed);
 
 /// The simulated arm as it is: geometry, base and its (first) target point.
-offline::Model truth_model(const offline::Simulation& simulation);
+offline::MeasurementModel truth_model(const offline::Simulation& simulation);
 
 /// Mean distance [mm] of the calibrated robot's target from the true one, in the tracker frame, over `count` random
 /// poses within the joint limits.
 double distance_from_truth_mm(const offline::Simulation& simulation, const offline::Calibration& calibration,
                               std::size_t count, std::uint64_t seed);
+
+/// Whether one of the notes contains `part`.
+bool noted(const offline::Calibration& calibration, const std::string& part);
 
 /// Of the identifiable parameters: how many 95 % intervals hold the truth.
 struct Coverage {

@@ -99,7 +99,7 @@ TEST(Uncertainty, PredictedPositionErrorAtAnyPoseIsThatOfRepeatedCalibrations) {
   quiet.noise_m = 0;
   quiet.configurations = 40;
   const Simulation s = simulate(family_robot("five-joint"), quiet);
-  const Model truth = truth_model(s);
+  const MeasurementModel truth = truth_model(s);
   Random random(12);
   std::vector<std::array<double, mdhcal::max_joints>> poses;
   for (int i = 0; i < 6; ++i) poses.push_back(random_readings(s.truth.geometry, random));
@@ -112,7 +112,7 @@ TEST(Uncertainty, PredictedPositionErrorAtAnyPoseIsThatOfRepeatedCalibrations) {
       for (double& x : m.position_m) x += 0.02e-3 * random.normal();
     }
     const Calibration c = calibrate(s.nominal, noisy, {});
-    const Model corrected(c.estimate);
+    const MeasurementModel corrected(c.estimate);
     for (std::size_t i = 0; i < poses.size(); ++i) {
       const double sd = predicted_position_sd_mm(corrected, c.layout, c.covariance, poses[i].data(), 0);
       const double error =
@@ -132,7 +132,7 @@ TEST(Uncertainty, PredictedPositionErrorIsTheErrorMade) {
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
     const Simulation s = simulate(family_robot("spherical-wrist"), arm_options(seed));
     const Calibration c = calibrate(s.nominal, s.train, {});
-    const Model corrected(c.estimate);
+    const MeasurementModel corrected(c.estimate);
     for (const Measurement& m : s.train.rows) {
       const double sd = predicted_position_sd_mm(corrected, c.layout, c.covariance, m.q.data(), 0);
       predicted += sd * sd;

@@ -24,9 +24,9 @@ Eigen::MatrixXd differences(const Calibration& c, const Estimate& at) {
   for (Eigen::Index column = 0; column < n; ++column) {
     Eigen::VectorXd step = Eigen::VectorXd::Zero(n);
     step(column) = h;
-    const Model up(moved(at, c.layout, step.data()));
+    const MeasurementModel up(moved(at, c.layout, step.data()));
     step(column) = -h;
-    const Model down(moved(at, c.layout, step.data()));
+    const MeasurementModel down(moved(at, c.layout, step.data()));
     for (std::size_t row = 0; row < c.training.rows.size(); ++row) {
       double a[max_row_residuals];
       double b[max_row_residuals];

@@ -67,7 +67,7 @@ class Bench {
     FitControl control;
     control.lambda = lambda;
     const Fit result = fit(simulation_.train, selection, setup.layout, frames.estimate, control);
-    const Model model(result.estimate), truth(truth_);
+    const MeasurementModel model(result.estimate), truth(truth_);
     Eigen::VectorXd error(test_.rows());
     for (std::size_t i = 0; i < simulation_.test.rows.size(); ++i) {
       const auto& q = simulation_.test.rows[i].q;
@@ -97,7 +97,7 @@ class Bench {
  private:
   void linearise_about_the_truth(const Dataset& data, Eigen::MatrixXd& jacobian, Eigen::VectorXd& residual_mm) {
     using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-    const Model model(truth_);
+    const MeasurementModel model(truth_);
     const auto rows = 3 * static_cast<Index>(data.rows.size()), columns = static_cast<Index>(layout_.columns());
     RowMajor all(rows, columns);
     residual_mm.resize(rows);

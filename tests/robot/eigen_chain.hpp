@@ -8,6 +8,7 @@
 
 #include "mdhcal/kinematics.hpp"
 #include "offline/robot/robot.hpp"
+#include "offline/simulate/random.hpp"
 
 namespace mdhcal::offline::test {
 
@@ -27,6 +28,10 @@ inline Eigen::Isometry3d xyz_rpy(const Eigen::Vector3d& xyz_m, const Eigen::Vect
 inline Eigen::Isometry3d isometry(const Pose<double>& pose) {
   const Eigen::Quaterniond q(pose.quaternion[0], pose.quaternion[1], pose.quaternion[2], pose.quaternion[3]);
   return Eigen::Translation3d(pose.position_m[0], pose.position_m[1], pose.position_m[2]) * q;
+}
+
+inline void random_readings(Random& random, double largest, double (&q)[max_joints]) {
+  for (double& reading : q) reading = random.uniform(-largest, largest);
 }
 
 /// The flange by lib's forward(), in the tracker frame where the robot has one.

@@ -49,17 +49,13 @@ Eigen::Matrix<Real, 4, 4> standard_flange(const Table& table, const double* q) {
   return t;
 }
 
-void random_readings(Random& random, double (&q)[max_joints]) {
-  for (double& reading : q) reading = random.uniform(-3, 3);
-}
-
 TEST(UrFactory, ThePublishedFramesAreThePublishedTable) {
   const Robot from_yaml = robot_from_chain(parse_ros_kinematics(ur5e_yaml, "ur5e.yaml"), "ur5e.yaml");
   const Robot nominal = ur_nominal("ur5e");
   Random random(1);
   for (int pose = 0; pose < 50; ++pose) {
     double q[max_joints];
-    random_readings(random, q);
+    random_readings(random, 3, q);
     EXPECT_LT(difference(flange(from_yaml, q), flange(nominal, q)), 2e-9);  // ten digits of pi/2
   }
 }
@@ -91,7 +87,7 @@ TEST(UrFactory, AControllersCorrectionGivesItsPosesWithoutRunawayLengths) {
   Random random(2);
   for (int pose = 0; pose < 100; ++pose) {
     double q[max_joints];
-    random_readings(random, q);
+    random_readings(random, 3, q);
     const Eigen::Matrix4d truth = standard_flange(table, q).cast<double>();
     EXPECT_LT(difference(flange(robot, q), Eigen::Isometry3d(truth)), 1e-12);
   }
@@ -134,7 +130,7 @@ MDHCAL_SHARED_DATA_TEST(UrFactory, RealUnitsComeBackThroughTheirCorrections) {
     Random random(5);
     for (int pose = 0; pose < 50; ++pose) {
       double q[max_joints];
-      random_readings(random, q);
+      random_readings(random, 3, q);
       const Eigen::Isometry3d truth(standard_flange(table, q).cast<double>());
       EXPECT_LT(difference(flange(corrected, q), truth), 1e-12) << file;
     }
@@ -153,7 +149,7 @@ TEST(UrFactory, KinematicsWrittenAreReadBackWithTheSamePoses) {
     Random random(3);
     for (int pose = 0; pose < 20; ++pose) {
       double q[max_joints];
-      random_readings(random, q);
+      random_readings(random, 3, q);
       EXPECT_LT(difference(flange(again, q), flange(robot, q)), 1e-9) << text;
     }
   }

@@ -81,10 +81,6 @@ Sample random_urdf(Random& random, const std::string& kinds, bool right_angles) 
   return sample;
 }
 
-void random_readings(Random& random, double (&q)[max_joints]) {
-  for (double& reading : q) reading = random.uniform(-1, 1);
-}
-
 TEST(Urdf, AnyChainKeepsItsPosesInBothDirections) {
   Random random(11);
   for (int k = 0; k < 200; ++k) {
@@ -95,7 +91,7 @@ TEST(Urdf, AnyChainKeepsItsPosesInBothDirections) {
     const Robot again = robot_from_chain(parse_urdf(out, "out.urdf", "", ""), "out.urdf");
     for (int pose = 0; pose < 5; ++pose) {
       double q[max_joints];
-      random_readings(random, q);
+      random_readings(random, 1, q);
       EXPECT_LT(difference(flange(robot, q), sample.tip(q)), 1e-9) << sample.text;
       EXPECT_LT(difference(flange(again, q), sample.tip(q)), 1e-9) << out;
     }
@@ -112,7 +108,7 @@ TEST(Urdf, ASimulatedArmSurvivesTheWayThroughUrdf) {
     Random random(5);
     for (int pose = 0; pose < 20; ++pose) {
       double q[max_joints];
-      random_readings(random, q);
+      random_readings(random, 1, q);
       EXPECT_LT(difference(flange(again, q), flange(truth, q)), 1e-9) << family;
     }
   }
@@ -135,7 +131,7 @@ TEST(Urdf, ACorrectedUrdfHasTheCorrectedPosesAndKeepsEverythingElse) {
     const Robot again = robot_from_chain(parse_urdf(out, "out.urdf", "", ""), "out.urdf");
     for (int pose = 0; pose < 5; ++pose) {
       double q[max_joints];
-      random_readings(random, q);
+      random_readings(random, 1, q);
       EXPECT_LT(difference(flange(again, q), flange(corrected, q)), 1e-9);
       EXPECT_GT(difference(flange(again, q), sample.tip(q)), 1e-5);
     }
