@@ -22,6 +22,34 @@ struct BoxProblem {
 
 inline bool has(std::uint32_t mask, std::int32_t j) { return ((mask >> static_cast<std::uint32_t>(j)) & 1U) != 0U; }
 
+/// The product of two vectors of `count` numbers. Six are spelled out, as most problems have so many equations: that takes
+/// half the instructions of the loop.
+inline Real product(const Real* a, const Real* b, std::int32_t count) {
+  Real sum = 0;
+  std::int32_t k = 0;
+  if (count >= 6) {
+    sum = ((((a[0] * b[0] + a[1] * b[1]) + a[2] * b[2]) + a[3] * b[3]) + a[4] * b[4]) + a[5] * b[5];
+    k = 6;
+  }
+  for (; k < count; ++k) sum += a[k] * b[k];
+  return sum;
+}
+
+/// to -= factor * v, likewise.
+inline void subtract(Real factor, const Real* v, Real* to, std::int32_t count) {
+  std::int32_t k = 0;
+  if (count >= 6) {
+    to[0] -= factor * v[0];
+    to[1] -= factor * v[1];
+    to[2] -= factor * v[2];
+    to[3] -= factor * v[3];
+    to[4] -= factor * v[4];
+    to[5] -= factor * v[5];
+    k = 6;
+  }
+  for (; k < count; ++k) to[k] -= factor * v[k];
+}
+
 /// The matrix of the least-squares problem of damping x = right over A x = b, and in its place the triangle R that
 /// factor() makes of it.
 struct Stack {
@@ -37,28 +65,19 @@ inline void factor(Stack& stack, Real damping, Real* right, Real* b) {
   const std::int32_t equations = stack.equations;
   for (std::int32_t i = 0; i < stack.size; ++i) {
     Real v[max_joints];
-    Real square = damping * damping;
-    for (std::int32_t k = 0; k < equations; ++k) {
-      v[k] = stack.column[i][k];
-      square += v[k] * v[k];
-    }
-    const Real norm = square_root(square);
+    for (std::int32_t k = 0; k < equations; ++k) v[k] = stack.column[i][k];
+    const Real norm = square_root(damping * damping + product(v, v, equations));
     const Real head = damping + norm;
     const Real scale = Real{1} / (norm * head);
     stack.diagonal[i] = -norm;
     for (std::int32_t j = i + 1; j < stack.size; ++j) {
-      Real* to = stack.column[j];
-      Real sum = 0;
-      for (std::int32_t k = 0; k < equations; ++k) sum += v[k] * to[k];
-      sum *= scale;
-      for (std::int32_t k = 0; k < equations; ++k) to[k] -= sum * v[k];
+      const Real sum = scale * product(v, stack.column[j], equations);
+      subtract(sum, v, stack.column[j], equations);
       stack.column[i][j - 1] = -sum * head;
     }
     if (b == nullptr) continue;
-    Real sum = head * right[i];
-    for (std::int32_t k = 0; k < equations; ++k) sum += v[k] * b[k];
-    sum *= scale;
-    for (std::int32_t k = 0; k < equations; ++k) b[k] -= sum * v[k];
+    const Real sum = scale * (head * right[i] + product(v, b, equations));
+    subtract(sum, v, b, equations);
     right[i] -= sum * head;
   }
 }
@@ -96,10 +115,9 @@ inline Real slope_of(const BoxProblem& problem, std::int32_t j) {
   return sum;
 }
 
-/// The minimum over the unknowns in `free_mask`, the others at x; into `z`, in the order of the free ones.
-[[gnu::noinline]] void solve_free(const BoxProblem& problem, std::uint32_t free_mask, const Real* x, Real* z) {
-  Stack stack;
-  Real right[max_joints];
+/// Factors the problem over the unknowns in `free_mask`, the others (if any) at x, and makes R z = right of it for the
+/// free ones, in their order.
+inline void factor_free(const BoxProblem& problem, std::uint32_t free_mask, const Real* x, Stack& stack, Real* right) {
   Real b[7];
   stack.equations = problem.rows;
   for (std::int32_t i = 0; i < problem.rows; ++i) b[i] = problem.b[i];
@@ -114,7 +132,43 @@ inline Real slope_of(const BoxProblem& problem, std::int32_t j) {
   }
   stack.size = size;
   factor(stack, problem.damping, right, b);
-  solve_upper(stack, right, z);
+}
+
+/// The minimum over all unknowns, free of bounds.
+[[gnu::noinline]] void solve_free(const BoxProblem& problem, Real* x) {
+  Stack stack;
+  Real right[max_joints];
+  factor_free(problem, (1U << static_cast<std::uint32_t>(problem.columns)) - 1U, nullptr, stack, right);
+  solve_upper(stack, right, x);
+}
+
+/// Holds unknown p of R z = right at `value`: its column leaves R, and rotations of neighbouring rows make the rest a
+/// triangle again (Golub, Van Loan 2013, sec. 6.5.2).
+[[gnu::noinline]] void hold(Stack& stack, Real* right, std::int32_t p, Real value) {
+  const std::int32_t last = stack.size - 1;
+  for (std::int32_t i = 0; i < p; ++i) {
+    Real* row = stack.column[i];
+    right[i] -= row[p - 1] * value;
+    for (std::int32_t j = p; j < last; ++j) row[j - 1] = row[j];
+  }
+  Real upper[max_joints];   // what is left of the row above, from the diagonal on
+  for (std::int32_t j = p; j < last; ++j) upper[j] = stack.column[p][j];
+  Real above = right[p] - stack.diagonal[p] * value;
+  for (std::int32_t i = p; i < last; ++i) {
+    const Real* lower = stack.column[i + 1];
+    const Real norm = square_root(upper[i] * upper[i] + stack.diagonal[i + 1] * stack.diagonal[i + 1]);
+    const Real c = upper[i] / norm;
+    const Real s = stack.diagonal[i + 1] / norm;
+    stack.diagonal[i] = norm;
+    for (std::int32_t j = i + 1; j < last; ++j) {
+      stack.column[i][j - 1] = c * upper[j] + s * lower[j];
+      upper[j] = c * lower[j] - s * upper[j];
+    }
+    const Real below = right[i + 1];
+    right[i] = c * above + s * below;
+    above = c * below - s * above;
+  }
+  stack.size = last;
 }
 
 /// Goes from x towards z (the free unknowns' values) as far as the bounds let it. Returns the unknown that met a bound
@@ -146,6 +200,20 @@ inline std::int32_t advance(const BoxProblem& problem, std::uint32_t free_mask, 
   return hit;
 }
 
+inline bool inside(const BoxProblem& problem, const Real* x) {
+  for (std::int32_t j = 0; j < problem.columns; ++j) {
+    if (x[j] < problem.low[j] || x[j] > problem.high[j]) return false;
+  }
+  return true;
+}
+
+/// Where unknown j stands among the free ones.
+inline std::int32_t place(std::uint32_t free_mask, std::int32_t j) {
+  std::int32_t before = 0;
+  for (std::int32_t i = 0; i < j; ++i) before += has(free_mask, i) ? 1 : 0;
+  return before;
+}
+
 /// Solves the problem by an active set (Lawson, Hanson 1974, ch. 23; Stark, Parker 1995): each round either meets a
 /// bound, which then holds, or lets go of the one that the residual pulls away from the hardest. The objective falls in
 /// every round, so x is usable at the bound of rounds too.
@@ -156,16 +224,20 @@ inline std::int32_t advance(const BoxProblem& problem, std::uint32_t free_mask, 
     if (problem.high[j] > problem.low[j]) movable |= 1U << static_cast<std::uint32_t>(j);
   }
   std::uint32_t free_mask = movable;
+  Stack stack;
+  Real right[max_joints];
+  factor_free(problem, free_mask, x, stack, right);
   for (std::int32_t round = 0; round < 3 * problem.columns; ++round) {
     Real z[max_joints];
-    solve_free(problem, free_mask, x, z);
+    solve_upper(stack, right, z);
     const std::int32_t hit = advance(problem, free_mask, z, x);
     if (hit >= 0) {
+      hold(stack, right, place(free_mask, hit), x[hit]);
       free_mask &= ~(1U << static_cast<std::uint32_t>(hit));
       continue;
     }
     if (free_mask == movable) break;
-    Real slope[max_joints];
+    Real* const slope = z;  // which has served: the stack of a controller is short
     for (std::int32_t j = 0; j < problem.columns; ++j) {
       slope[j] = problem.damping * problem.damping * (problem.pull[j] - x[j]);
     }
@@ -185,6 +257,7 @@ inline std::int32_t advance(const BoxProblem& problem, std::uint32_t free_mask, 
     }
     if (release < 0) break;
     free_mask |= 1U << static_cast<std::uint32_t>(release);
+    factor_free(problem, free_mask, x, stack, right);
   }
 }
 

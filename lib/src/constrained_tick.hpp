@@ -20,8 +20,6 @@ constexpr Real furthest_leap = Real(0.05);
 /// the best is to be made of it.
 constexpr Real half = Real(0.5);
 constexpr Real little = Real(1e-5);
-/// After the first step at least this: what comes more slowly can wait for the next tick.
-constexpr Real creeping = Real(0.003);
 
 /// A minimisation's joints, and the linear model there.
 struct Search {
@@ -29,6 +27,7 @@ struct Search {
   BoxProblem problem;
   Real rotation_weight;
   Real cost;             ///< |weighted error|^2 at the joints
+  Real weighed_before;   ///< weighed() of the last joints
   Real scale;            ///< of the damping
   std::int32_t patience;
   bool met;
@@ -58,6 +57,7 @@ struct Aim {
   const Bend* keep;       ///< or null
   bool posture;           ///< the first step goes to the posture as well
   Real promise;           ///< the least part of the cost that the linear model has to take away for a step to be tried
+  Real creeping;          ///< likewise, after the first step: what comes more slowly can wait for the next tick
   std::int32_t patience;  ///< iterations that fail or gain little
   std::int32_t most;      ///< evaluations of the arm
 };
@@ -111,10 +111,6 @@ inline bool limit_ends(const TickState& state, std::int32_t j, bool up) {
             : has(arm.min_mask, j) && !(state.low[j] > arm.min[j]);
 }
 
-inline std::uint32_t all_joints(const Search& search) {
-  return (1U << static_cast<std::uint32_t>(search.problem.columns)) - 1U;
-}
-
 /// The room for a step around the search's joints.
 inline void set_room(Search& search) {
   const TickState& state = *search.state;
@@ -126,13 +122,13 @@ inline void set_room(Search& search) {
   }
 }
 
-/// Solves for a step; where it takes the kept singular value below its least, once more with the equation that it ends
-/// there.
+/// Solves for a step, which is that of fit_damping() already if a singular value is kept and it has the room; where it
+/// takes that below its least, once more with the equation that it ends there.
 [[gnu::noinline]] void solve_kept(Search& search, const Bend* keep, Real* step) {
   // Against rows of one and less: the equation is met to a thousandth.
   constexpr Real weight = 30;
   BoxProblem& problem = search.problem;
-  solve(problem, step);
+  if (keep == nullptr || !inside(problem, step)) solve(problem, step);
   if (keep == nullptr) return;
   const TickState& state = *search.state;
   Real give = keep->weakest.s - keep->least;
@@ -158,8 +154,9 @@ inline Real step_room(const TickState& state, std::int32_t j, bool up) {
 }
 
 /// Raises the damping, to little more than the least, until the step fits between the step limits: unlike one that is cut
-/// off at them, it keeps to the directions that the joints are good at. Returns whether it had to.
-[[gnu::noinline]] bool fit_damping(Search& search) {
+/// off at them, it keeps to the directions that the joints are good at. `step`: the last that was tried. Returns whether it
+/// had to.
+[[gnu::noinline]] bool fit_damping(Search& search, Real* step) {
   const TickState& state = *search.state;
   BoxProblem& problem = search.problem;
   // Far from the pose the damping rules, and a step is the slope over its square. Never more than is needed: no
@@ -176,8 +173,7 @@ inline Real step_room(const TickState& state, std::int32_t j, bool up) {
     raised = true;
   }
   for (int round = 0; round < 8; ++round) {
-    Real step[max_joints] = {};
-    solve_free(problem, all_joints(search), step, step);
+    solve_free(problem, step);
     Real worst = 0;
     for (std::int32_t j = 0; j < problem.columns; ++j) {
       const Real room = step_room(state, j, step[j] > Real{0});
@@ -213,8 +209,8 @@ enum class Chance : std::int32_t {
 [[gnu::noinline]] Chance chance(const Search& search, const Bend* bend) {
   const TickState& state = *search.state;
   if (beyond_reach(state)) return Chance::none;
-  Real step[max_joints] = {};
-  solve_free(search.problem, all_joints(search), step, step);
+  Real step[max_joints];
+  solve_free(search.problem, step);
   Real room = 0;
   Real along = 0;
   for (std::int32_t j = 0; j < search.problem.columns; ++j) {
@@ -287,6 +283,25 @@ inline Real within_bounds(const TickState& state, std::int32_t j, Real q) {
   return goes;
 }
 
+/// The error's square by the caller's weights.
+inline Real weighed(const TickState& state) {
+  const Real position = state.error.position_m / state.length_m;
+  const Real rotation = state.error.rotation_rad * state.options->rotation_weight / state.options->position_weight;
+  return position * position + rotation * rotation;
+}
+
+/// Whether the search has gone far from the last joints [rad, or lengths of the arm] and lost by the caller's weights: the
+/// next tick would go it back.
+[[gnu::noinline]] bool gone_for_nothing(const Search& search) {
+  constexpr Real far = Real(0.05);
+  const TickState& state = *search.state;
+  if (search.met || !(weighed(state) > search.weighed_before)) return false;
+  for (std::int32_t j = 0; j < state.arm->joint_count; ++j) {
+    if (magnitude(state.q[j] - state.last[j]) > far * joint_unit(state, j)) return true;
+  }
+  return false;
+}
+
 /// Damped least squares (Levenberg 1944, Marquardt 1963) within the bounds, from the search's joints. Stops when the
 /// pose is met, when the linear model promises nothing, when a step has gone to the step limit, when patience is lost,
 /// or at the bound of evaluations.
@@ -303,8 +318,8 @@ inline Real within_bounds(const TickState& state, std::int32_t j, Real q) {
     if (posture || problem.damping < least_damping) problem.damping = least_damping;
     set_pull(search, posture);
     set_room(search);
-    const bool fitted = aim.keep != nullptr && fit_damping(search);
     Real step[max_joints];
+    const bool fitted = aim.keep != nullptr && fit_damping(search, step);
     solve_kept(search, aim.keep, step);
     Real predicted = 0;
     for (std::int32_t i = 0; i < problem.rows; ++i) {
@@ -314,7 +329,7 @@ inline Real within_bounds(const TickState& state, std::int32_t j, Real q) {
     if (!posture && !(search.cost - predicted > promise * search.cost)) return;
     if (go(search, aim, step, predicted, posture) && fitted) return;
     posture = false;
-    if (promise < creeping) promise = creeping;
+    promise = aim.creeping;
   }
 }
 
@@ -381,7 +396,7 @@ inline Real falling(Real x, Real low, Real high) {
       state.q[j] = within_bounds(state, j, rest[j] + leap * bend.weakest.v[j] * joint_unit(state, j));
     }
     start(search, state, state.q);
-    minimise(search, {care, true, nullptr, false, half, 2, most});
+    minimise(search, {care, true, nullptr, false, half, half, 2, most});
   }
 }
 
@@ -430,29 +445,18 @@ inline Real falling(Real x, Real low, Real high) {
   const Real before = bend.weakest.s;
   const Real weight = search.rotation_weight;
   const bool weighted = weight < Real(0.05);
+  // A wrist comes round only slowly.
   const std::int32_t patience = weighted ? 6 : 2;
-  minimise(search, {weighted ? Real{2} * weight : care, false, keeps ? &bend : nullptr, false, little, patience, most});
-  find_weakest(search.problem, state.options->task, weight, bend.weakest);
-  if (!search.met && weighted && bend.weakest.s > before) {
-    minimise(search, {Real(0.001) * weight, false, nullptr, false, little, patience, most});
-    find_weakest(search.problem, state.options->task, weight, bend.weakest);
+  const Real creeping = weighted ? Real(0.003) : Real(0.02);
+  minimise(search, {weighted ? Real{2} * weight : care, false, keeps ? &bend : nullptr, false, little, creeping, patience, most});
+  bool nothing = gone_for_nothing(search);
+  if (!nothing) find_weakest(search.problem, state.options->task, weight, bend.weakest);
+  if (!nothing && !search.met && weighted && bend.weakest.s > before) {
+    minimise(search, {Real(0.001) * weight, false, nullptr, false, little, creeping, patience, most});
+    nothing = gone_for_nothing(search);
+    if (!nothing) find_weakest(search.problem, state.options->task, weight, bend.weakest);
   }
-}
-
-/// The error's square by the caller's weights.
-inline Real weighed(const TickState& state) {
-  const Real position = state.error.position_m / state.length_m;
-  const Real rotation = state.error.rotation_rad * state.options->rotation_weight / state.options->position_weight;
-  return position * position + rotation * rotation;
-}
-
-/// Whether a joint has gone far from the last ones [rad, or lengths of the arm].
-inline bool far_off(const TickState& state) {
-  constexpr Real far = Real(0.05);
-  for (std::int32_t j = 0; j < state.arm->joint_count; ++j) {
-    if (magnitude(state.q[j] - state.last[j]) > far * joint_unit(state, j)) return true;
-  }
-  return false;
+  if (nothing) look_along(search, state.last, bend);
 }
 
 /// The tick where limits, singularities or free joints matter. First the pose is tried with all errors alike; if that
@@ -473,7 +477,7 @@ inline bool far_off(const TickState& state) {
   } else {
     start(search, state, state.last);
   }
-  const Real before = weighed(state);
+  search.weighed_before = weighed(state);
   search.problem.damping = step_damping(search, care);
   set_pull(search, false);
   std::int32_t most = state.options->max_iterations;
@@ -481,7 +485,7 @@ inline bool far_off(const TickState& state) {
   if (found == Chance::some) {
     there = false;
     // A quarter of the evaluations is left for what comes after it.
-    minimise(search, {care, true, nullptr, posture, half, 2, (3 * most + 3) / 4});
+    minimise(search, {care, true, nullptr, posture, half, half, 2, (3 * most + 3) / 4});
     if (!search.met) leave_fold(search, bend);
   }
   // What cannot be had is not worth more.
@@ -490,8 +494,6 @@ inline bool far_off(const TickState& state) {
     find_weakest(search.problem, state.options->task, Real{1}, bend.weakest);
   } else {
     make_the_best(search, bend, there, most);
-    // A long way for nothing is not gone: the next tick would go it back.
-    if (!search.met && far_off(state) && weighed(state) > before) look_along(search, state.last, bend);
   }
   state.smallest_singular_value = bend.weakest.s;
   if (!search.met) find_pushing(search);

@@ -57,27 +57,37 @@ struct Weakest {
 }
 
 /// Change of u . J v by the unit-free readings, u and v held. From the axes alone: the Jacobian's column i changes with
-/// joint coordinate j by z_min(i,j) x p_max(i,j) in its upper half and, if j < i, by z_j x z_i in its lower one
-/// (Bruyninckx, De Schutter 1996).
+/// joint coordinate k by z_min(i,k) x p_max(i,k) in its upper half and, if k < i, by z_k x z_i in its lower one
+/// (Bruyninckx, De Schutter 1996); the columns up to k and beyond it are added up before they are multiplied.
 [[gnu::noinline]] void slope_of_weakest(const TickState& state, const Frame<Real>& frame,
                                         const Jacobian<Real>& coordinates, const Weakest& weakest, Real* slope) {
   const Arm<Real>& arm = *state.arm;
   const std::int32_t joints = arm.joint_count;
   Real u[6];
   from_task(state, frame, weakest.u, u);
-  for (std::int32_t j = 0; j < joints; ++j) slope[j] = 0;
+  Real rate[max_joints];
+  Real beyond[6] = {0, 0, 0, 0, 0, 0};
   for (std::int32_t i = 0; i < joints; ++i) {
-    Real rate = 0;
-    for (std::int32_t j = 0; j < joints; ++j) rate += arm.map[i][j] * joint_unit(state, j) * weakest.v[j];
-    for (std::int32_t k = 0; k < joints; ++k) {
-      const Real* first = coordinates.column[i < k ? i : k];
-      const Real* second = coordinates.column[i < k ? k : i];
-      Real change[6] = {0, 0, 0, 0, 0, 0};
-      add_cross(first + 3, second, rate, change);
-      if (k < i) add_cross(first + 3, second + 3, rate, change + 3);
-      const Real by_coordinate = dot(u, change) + dot(u + 3, change + 3);
-      for (std::int32_t j = 0; j < joints; ++j) slope[j] += arm.map[k][j] * joint_unit(state, j) * by_coordinate;
-    }
+    rate[i] = 0;
+    for (std::int32_t j = 0; j < joints; ++j) rate[i] += arm.map[i][j] * joint_unit(state, j) * weakest.v[j];
+    for (int k = 0; k < 6; ++k) beyond[k] += rate[i] * coordinates.column[i][k];
+  }
+  Real turn[3] = {0, 0, 0};
+  Real by_coordinate[max_joints];
+  for (std::int32_t k = 0; k < joints; ++k) {
+    const Real* column = coordinates.column[k];
+    for (int i = 0; i < 6; ++i) beyond[i] -= rate[k] * column[i];
+    for (int i = 0; i < 3; ++i) turn[i] += rate[k] * column[3 + i];
+    Real change[6] = {0, 0, 0, 0, 0, 0};
+    add_cross(turn, column, Real{1}, change);
+    add_cross(column + 3, beyond, Real{1}, change);
+    add_cross(column + 3, beyond + 3, Real{1}, change + 3);
+    by_coordinate[k] = dot(u, change) + dot(u + 3, change + 3);
+  }
+  for (std::int32_t j = 0; j < joints; ++j) {
+    slope[j] = 0;
+    for (std::int32_t k = 0; k < joints; ++k) slope[j] += arm.map[k][j] * by_coordinate[k];
+    slope[j] *= joint_unit(state, j);
   }
 }
 
