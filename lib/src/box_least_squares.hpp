@@ -22,8 +22,8 @@ struct BoxProblem {
 
 inline bool has(std::uint32_t mask, std::int32_t j) { return ((mask >> static_cast<std::uint32_t>(j)) & 1U) != 0U; }
 
-/// The product of two vectors of `count` numbers. Six are spelled out, as most problems have so many equations: that takes
-/// half the instructions of the loop.
+/// The product of two vectors of `count` numbers. Six are spelled out, as most problems have so many equations: factor()
+/// then takes a quarter fewer instructions.
 inline Real product(const Real* a, const Real* b, std::int32_t count) {
   Real sum = 0;
   std::int32_t k = 0;

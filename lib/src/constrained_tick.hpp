@@ -448,7 +448,8 @@ inline Real falling(Real x, Real low, Real high) {
   // A wrist comes round only slowly.
   const std::int32_t patience = weighted ? 6 : 2;
   const Real creeping = weighted ? Real(0.003) : Real(0.02);
-  minimise(search, {weighted ? Real{2} * weight : care, false, keeps ? &bend : nullptr, false, little, creeping, patience, most});
+  const Real damping = weighted ? Real{2} * weight : care;
+  minimise(search, {damping, false, keeps ? &bend : nullptr, false, little, creeping, patience, most});
   bool nothing = gone_for_nothing(search);
   if (!nothing) find_weakest(search.problem, state.options->task, weight, bend.weakest);
   if (!nothing && !search.met && weighted && bend.weakest.s > before) {

@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: MIT
+// The solver of a tick's step against the conditions that mark the minimum within bounds (Karush 1939; Kuhn, Tucker 1951).
+#define MDHCAL_REAL double
+#include "lib/src/box_least_squares.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tests/lib/arms.hpp"
+
+namespace {
+
+using namespace mdhcal;
+using test::Random;
+
+// The rows' entries up to 1, nearly dependent in every third problem; bounds from nothing to far beyond the solution.
+BoxProblem random_problem(Random& random, int n, std::int32_t rows, std::int32_t columns) {
+  BoxProblem problem{};
+  problem.rows = rows;
+  problem.columns = columns;
+  for (std::int32_t i = 0; i < rows; ++i) {
+    for (std::int32_t j = 0; j < columns; ++j) problem.row[i][j] = random.symmetric(1);
+    problem.b[i] = random.symmetric(1);
+  }
+  if (n % 3 == 0 && rows > 1) {
+    for (std::int32_t j = 0; j < columns; ++j) problem.row[1][j] = problem.row[0][j] + random.symmetric(1e-6);
+  }
+  problem.damping = std::pow(10.0, -4.0 + 4.0 * std::fabs(random.symmetric(1)));
+  for (std::int32_t j = 0; j < columns; ++j) {
+    problem.pull[j] = n % 2 == 0 ? 0 : random.symmetric(0.1);
+    problem.low[j] = j == n % 11 ? 0 : -std::pow(10.0, random.symmetric(2));
+    problem.high[j] = j == n % 7 ? 0 : std::pow(10.0, random.symmetric(2));
+  }
+  return problem;
+}
+
+// Minus half the slope of the objective by x_j.
+double pull_on(const BoxProblem& problem, const double* x, std::int32_t j) {
+  double sum = problem.damping * problem.damping * (problem.pull[j] - x[j]);
+  for (std::int32_t i = 0; i < problem.rows; ++i) sum += problem.row[i][j] * residual(problem, i, x);
+  return sum;
+}
+
+TEST(BoxLeastSquares, MeetsTheConditionsOfTheMinimum) {
+  constexpr double tolerance = 1e-10;  // against numbers of about 1, with dampings down to 1e-4
+  Random random(41);
+  int at_bounds = 0;
+  constexpr int problems = test::cases(20000);
+  for (int n = 0; n < problems; ++n) {
+    const auto rows = static_cast<std::int32_t>(1 + n % 7), columns = static_cast<std::int32_t>(1 + n / 7 % 8);
+    const BoxProblem problem = random_problem(random, n, rows, columns);
+    double x[max_joints];
+    solve(problem, x);
+    for (std::int32_t j = 0; j < columns; ++j) {
+      ASSERT_GE(x[j], problem.low[j]);
+      ASSERT_LE(x[j], problem.high[j]);
+      const double pull = pull_on(problem, x, j);
+      // Away from a bound nothing pulls; on one, only outwards.
+      if (x[j] < problem.high[j]) {
+        ASSERT_LT(pull, tolerance) << n << ' ' << j;
+      }
+      if (x[j] > problem.low[j]) {
+        ASSERT_GT(pull, -tolerance) << n << ' ' << j;
+      }
+      if (!(x[j] < problem.high[j]) || !(x[j] > problem.low[j])) ++at_bounds;
+    }
+  }
+  EXPECT_GT(at_bounds, problems);
+}
+
+TEST(BoxLeastSquares, WithRoomIsTheSolutionWithoutBounds) {
+  Random random(42);
+  for (int n = 0; n < 1000; ++n) {
+    BoxProblem problem = random_problem(random, n, 6, 6);
+    double free[max_joints], bounded[max_joints];
+    solve_free(problem, free);
+    for (std::int32_t j = 0; j < 6; ++j) {
+      problem.low[j] = -1e9;
+      problem.high[j] = 1e9;
+      ASSERT_LT(std::fabs(pull_on(problem, free, j)), 1e-9);
+    }
+    EXPECT_TRUE(inside(problem, free));
+    solve(problem, bounded);
+    for (std::int32_t j = 0; j < 6; ++j) ASSERT_EQ(bounded[j], free[j]);
+  }
+}
+
+}  // namespace
