@@ -1,16 +1,13 @@
 // SPDX-License-Identifier: MIT
-// Private to lib/src; include after real.hpp. The servo tick where limits, singularities or free joints matter.
+// Private to lib/src; include after real.hpp. The servo tick where limits, singularities or free joints matter: which
+// minimisations (search.hpp) it takes, and what is claimed of their result.
 #pragma once
 
-#include "weakest_direction.hpp"
+#include "search.hpp"
 
 namespace mdhcal {
 namespace {
 
-/// The longest step between two evaluations [rad, or lengths of the arm].
-constexpr Real longest_step = Real(0.3);
-/// What keeps the equations of a step regular; a direction with a smaller singular value is left alone.
-constexpr Real least_damping = sizeof(Real) == sizeof(double) ? Real(1e-8) : Real(1e-4);
 /// The damping of the first step over the root of the error.
 constexpr Real care = Real(0.1);
 constexpr Real near_singular_below = Real(0.01);
@@ -20,172 +17,6 @@ constexpr Real furthest_leap = Real(0.05);
 /// the best is to be made of it.
 constexpr Real half = Real(0.5);
 constexpr Real little = Real(1e-5);
-
-/// A minimisation's joints, and the linear model there.
-struct Search {
-  TickState* state;
-  BoxProblem problem;
-  Real rotation_weight;
-  Real cost;             ///< |weighted error|^2 at the joints
-  Real weighed_before;   ///< weighed() of the last joints
-  Real scale;            ///< of the damping
-  std::int32_t patience;
-  bool met;
-};
-
-/// What one evaluation of the arm shows. Large, hence on the stack only of what uses it.
-struct Look {
-  Frame<Real> frame;
-  Jacobian<Real> coordinates;   ///< by joint coordinate
-  PoseError error;
-};
-
-/// The weakest singular direction at some joints and what it does.
-struct Bend {
-  Weakest weakest;
-  Real slope[max_joints];   ///< of the singular value, by the unit-free readings
-  Real along;               ///< the slope along the direction
-  Real wanted;              ///< the error's component that the direction answers
-  Real fold;                ///< 1 on a straight elbow: the direction shifts the flange and bends; 0 on a wrist; else between
-  Real least;               ///< a minimisation with it may not take the singular value below this
-};
-
-/// How a minimisation goes about it.
-struct Aim {
-  Real damping;           ///< of a step, the weight of the joints' motion; times the error's root if `by_error`
-  bool by_error;
-  const Bend* keep;       ///< or null
-  bool posture;           ///< the first step goes to the posture as well
-  Real promise;           ///< the least part of the cost that the linear model has to take away for a step to be tried
-  Real creeping;          ///< likewise, after the first step: what comes more slowly can wait for the next tick
-  std::int32_t patience;  ///< iterations that fail or gain little
-  std::int32_t most;      ///< evaluations of the arm
-};
-
-inline void look_at(TickState& state, const Real* q, Look& look) {
-  evaluate(*state.arm, q, look.frame, look.coordinates);
-  ++state.evaluations;
-  pose_error(state.target, look.frame, state.options->task, look.error);
-}
-
-inline Real square(const Real* b, std::int32_t count) {
-  Real sum = 0;
-  for (std::int32_t i = 0; i < count; ++i) sum += b[i] * b[i];
-  return sum;
-}
-
-/// Makes q the search's joints.
-inline void settle(Search& search, const Real* q, const Look& look) {
-  TickState& state = *search.state;
-  BoxProblem& problem = search.problem;
-  for (std::int32_t j = 0; j < state.arm->joint_count; ++j) state.q[j] = q[j];
-  state.error = look.error;
-  to_task(state, look.frame, search.rotation_weight, look.error.vector, problem.b);
-  search.cost = square(problem.b, problem.rows);
-  linearise(state, look.frame, look.coordinates, search.rotation_weight, problem);
-}
-
-/// Gives the rotation another weight, once, in the model as it stands.
-inline void weigh_rotation(Search& search, Real weight) {
-  BoxProblem& problem = search.problem;
-  search.rotation_weight = weight;
-  for (std::int32_t i = first_turn(search.state->options->task); i < problem.rows; ++i) {
-    for (std::int32_t j = 0; j < problem.columns; ++j) problem.row[i][j] *= weight;
-    problem.b[i] *= weight;
-  }
-  search.cost = square(problem.b, problem.rows);
-}
-
-/// Starts a search with all errors alike at q.
-[[gnu::noinline]] void start(Search& search, TickState& state, const Real* q) {
-  search.rotation_weight = 1;
-  Look look;
-  look_at(state, q, look);
-  settle(search, q, look);
-}
-
-/// Joints whose arm's limit, not the step limit, ends the way down or up.
-inline bool limit_ends(const TickState& state, std::int32_t j, bool up) {
-  const Arm<Real>& arm = *state.arm;
-  return up ? has(arm.max_mask, j) && !(state.high[j] < arm.max[j])
-            : has(arm.min_mask, j) && !(state.low[j] > arm.min[j]);
-}
-
-/// The room for a step around the search's joints.
-inline void set_room(Search& search) {
-  const TickState& state = *search.state;
-  for (std::int32_t j = 0; j < state.arm->joint_count; ++j) {
-    const Real down = (state.q[j] - state.low[j]) / joint_unit(state, j);
-    const Real up = (state.high[j] - state.q[j]) / joint_unit(state, j);
-    search.problem.low[j] = down > longest_step ? -longest_step : -down;
-    search.problem.high[j] = up > longest_step ? longest_step : up;
-  }
-}
-
-/// Solves for a step, which is that of fit_damping() already if a singular value is kept and it has the room; where it
-/// takes that below its least, once more with the equation that it ends there.
-[[gnu::noinline]] void solve_kept(Search& search, const Bend* keep, Real* step) {
-  // Against rows of one and less: the equation is met to a thousandth.
-  constexpr Real weight = 30;
-  BoxProblem& problem = search.problem;
-  if (keep == nullptr || !inside(problem, step)) solve(problem, step);
-  if (keep == nullptr) return;
-  const TickState& state = *search.state;
-  Real give = keep->weakest.s - keep->least;
-  Real change = 0;
-  for (std::int32_t j = 0; j < problem.columns; ++j) {
-    give += keep->slope[j] * (state.q[j] - state.last[j]) / joint_unit(state, j);
-    change += keep->slope[j] * step[j];
-  }
-  if (give + change >= Real{0}) return;
-  for (std::int32_t j = 0; j < problem.columns; ++j) problem.row[problem.rows][j] = weight * keep->slope[j];
-  problem.b[problem.rows] = -weight * give;
-  ++problem.rows;
-  solve(problem, step);
-  --problem.rows;
-}
-
-/// What the step limits leave of joint j's way in one direction, or 0 if the arm's limit ends it: a joint that has used
-/// up its step holds nobody else back.
-inline Real step_room(const TickState& state, std::int32_t j, bool up) {
-  if (limit_ends(state, j, up)) return 0;
-  const Real room = (up ? state.high[j] - state.q[j] : state.q[j] - state.low[j]) / joint_unit(state, j);
-  return room > Real(1e-9) ? room : Real{0};
-}
-
-/// Raises the damping, to little more than the least, until the step fits between the step limits: unlike one that is cut
-/// off at them, it keeps to the directions that the joints are good at. `step`: the last that was tried. Returns whether it
-/// had to.
-[[gnu::noinline]] bool fit_damping(Search& search, Real* step) {
-  const TickState& state = *search.state;
-  BoxProblem& problem = search.problem;
-  // Far from the pose the damping rules, and a step is the slope over its square. Never more than is needed: no
-  // singular value squared is over 4.
-  Real steepest = 0;
-  for (std::int32_t j = 0; j < problem.columns; ++j) {
-    const Real slope = slope_of(problem, j);
-    const Real room = step_room(state, j, slope > Real{0});
-    if (room > Real{0} && magnitude(slope) > steepest * room) steepest = magnitude(slope) / room;
-  }
-  bool raised = false;
-  if (steepest > Real{4} + problem.damping * problem.damping) {
-    problem.damping = square_root(steepest - Real{4});
-    raised = true;
-  }
-  for (int round = 0; round < 8; ++round) {
-    solve_free(problem, step);
-    Real worst = 0;
-    for (std::int32_t j = 0; j < problem.columns; ++j) {
-      const Real room = step_room(state, j, step[j] > Real{0});
-      if (room > Real{0} && magnitude(step[j]) > worst * room) worst = magnitude(step[j]) / room;
-    }
-    if (!(worst > Real{1})) break;
-    raised = true;
-    const Real factor = Real(1.1) * square_root(worst);
-    problem.damping *= factor > Real(1.5) ? factor : Real(1.5);
-  }
-  return raised;
-}
 
 /// Whether the target is further from the base than the arm is long. Slides may be of any length.
 inline bool beyond_reach(const TickState& state) {
@@ -228,109 +59,6 @@ enum class Chance : std::int32_t {
     if (s * s + Real{2} * (bend->along * bend->wanted + magnitude(bend->along) * slack) < Real{0}) return Chance::none;
   }
   return length2 > Real{64} * room ? Chance::not_within_a_step : Chance::some;
-}
-
-/// scale |error|^(1/2): far from the target a step is careful, near it Newton's (Yamashita, Fukushima 2001; Sugihara
-/// 2011).
-inline Real step_damping(const Search& search, Real scale) {
-  const Real damping = scale * square_root(square_root(search.cost));
-  return damping > least_damping ? damping : least_damping;
-}
-
-inline void set_pull(Search& search, bool posture) {
-  const TickState& state = *search.state;
-  // A tenth of a radian a tick keeps the null space's curvature small against the steps that follow.
-  constexpr Real longest = Real(0.1);
-  for (std::int32_t j = 0; j < state.arm->joint_count; ++j) {
-    const Real way =
-        posture ? (state.options->posture[j] - state.q[j]) / joint_unit(state, j) * state.options->posture_gain : Real{0};
-    search.problem.pull[j] = way > longest ? longest : (way < -longest ? -longest : way);
-  }
-}
-
-inline Real within_bounds(const TickState& state, std::int32_t j, Real q) {
-  return q < state.low[j] ? state.low[j] : (q > state.high[j] ? state.high[j] : q);
-}
-
-/// Goes the step if that meets the pose, or brings some of what the linear model `predicted` of the cost, and adapts the
-/// damping and the patience; one towards the posture is gone whatever it costs. Returns whether it went.
-[[gnu::noinline]] bool go(Search& search, const Aim& aim, const Real* step, Real predicted, bool posture) {
-  TickState& state = *search.state;
-  Real q[max_joints];
-  for (std::int32_t j = 0; j < search.problem.columns; ++j) {
-    q[j] = within_bounds(state, j, state.q[j] + step[j] * joint_unit(state, j));
-  }
-  Look look;
-  look_at(state, q, look);
-  search.met = met(state, look.error);
-  Real b[6];
-  to_task(state, look.frame, search.rotation_weight, look.error.vector, b);
-  const Real cost = square(b, search.problem.rows);
-  const Real ratio = (search.cost - cost) / (search.cost - predicted);
-  const bool goes = search.met || posture || ratio > Real(0.001);
-  // A step that does as predicted has to halve the cost to count as a gain, one that does not to quarter it.
-  const Real enough = ratio > Real(0.75) ? Real(0.5) : Real(0.25);
-  if (!posture) {
-    if (!goes || !(cost < enough * search.cost)) --search.patience;
-    if (!(ratio > Real(0.25))) {
-      // A damping that does not go by the error may be far too small.
-      search.scale *= aim.by_error || ratio > Real{-10} ? Real{10} : Real{1000};
-    } else if (ratio > Real(0.75) && aim.by_error) {
-      search.scale *= Real(0.1);
-    }
-  }
-  if (goes) settle(search, q, look);
-  return goes;
-}
-
-/// The error's square by the caller's weights.
-inline Real weighed(const TickState& state) {
-  const Real position = state.error.position_m / state.length_m;
-  const Real rotation = state.error.rotation_rad * state.options->rotation_weight / state.options->position_weight;
-  return position * position + rotation * rotation;
-}
-
-/// Whether the search has gone far from the last joints [rad, or lengths of the arm] and lost by the caller's weights: the
-/// next tick would go it back.
-[[gnu::noinline]] bool gone_for_nothing(const Search& search) {
-  constexpr Real far = Real(0.05);
-  const TickState& state = *search.state;
-  if (search.met || !(weighed(state) > search.weighed_before)) return false;
-  for (std::int32_t j = 0; j < state.arm->joint_count; ++j) {
-    if (magnitude(state.q[j] - state.last[j]) > far * joint_unit(state, j)) return true;
-  }
-  return false;
-}
-
-/// Damped least squares (Levenberg 1944, Marquardt 1963) within the bounds, from the search's joints. Stops when the
-/// pose is met, when the linear model promises nothing, when a step has gone to the step limit, when patience is lost,
-/// or at the bound of evaluations.
-[[gnu::noinline]] void minimise(Search& search, const Aim& aim) {
-  TickState& state = *search.state;
-  BoxProblem& problem = search.problem;
-  bool posture = aim.posture;
-  Real promise = aim.promise;
-  search.scale = aim.damping;
-  search.patience = aim.patience;
-  search.met = met(state, state.error) && !posture;
-  while (!search.met && search.patience >= 0 && state.evaluations < aim.most) {
-    problem.damping = aim.by_error ? step_damping(search, search.scale) : search.scale;
-    if (posture || problem.damping < least_damping) problem.damping = least_damping;
-    set_pull(search, posture);
-    set_room(search);
-    Real step[max_joints];
-    const bool fitted = aim.keep != nullptr && fit_damping(search, step);
-    solve_kept(search, aim.keep, step);
-    Real predicted = 0;
-    for (std::int32_t i = 0; i < problem.rows; ++i) {
-      const Real left = residual(problem, i, step);
-      predicted += left * left;
-    }
-    if (!posture && !(search.cost - predicted > promise * search.cost)) return;
-    if (go(search, aim, step, predicted, posture) && fitted) return;
-    posture = false;
-    promise = aim.creeping;
-  }
 }
 
 /// Sets the masks: joints at a bound that the error pushes further.
@@ -436,13 +164,33 @@ inline Real falling(Real x, Real low, Real high) {
   return (bend.fold > Real(0.5) || s >= Real(0.1)) && s > Real(1e-6);
 }
 
+/// The error's square by the caller's weights.
+inline Real weighed(const TickState& state) {
+  const Real position = state.error.position_m / state.length_m;
+  const Real rotation = state.error.rotation_rad * state.options->rotation_weight / state.options->position_weight;
+  return position * position + rotation * rotation;
+}
+
+/// Whether the search has gone far from the last joints [rad, or lengths of the arm] and lost by the caller's weights: the
+/// next tick would go it back.
+[[gnu::noinline]] bool gone_for_nothing(const Search& search, Real weighed_before) {
+  constexpr Real far = Real(0.05);
+  const TickState& state = *search.state;
+  if (search.met || !(weighed(state) > weighed_before)) return false;
+  for (std::int32_t j = 0; j < state.arm->joint_count; ++j) {
+    if (magnitude(state.q[j] - state.last[j]) > far * joint_unit(state, j)) return true;
+  }
+  return false;
+}
+
 /// The best that can be had of a pose that is not met, in `most` evaluations. Where a singularity is passed the weakest
 /// direction rests while its singular value falls, and is caught up while that rises. `there`: the search has not left
 /// the last joints, and bend is of them; in the end it is of the result.
 [[gnu::noinline]] void make_the_best(Search& search, Bend& bend, bool there, std::int32_t most) {
   TickState& state = *search.state;
   const bool keeps = start_over(search, bend, there);
-  const Real before = bend.weakest.s;
+  const Real weighed_before = weighed(state);
+  const Real s_before = bend.weakest.s;
   const Real weight = search.rotation_weight;
   const bool weighted = weight < Real(0.05);
   // A wrist comes round only slowly.
@@ -450,11 +198,11 @@ inline Real falling(Real x, Real low, Real high) {
   const Real creeping = weighted ? Real(0.003) : Real(0.02);
   const Real damping = weighted ? Real{2} * weight : care;
   minimise(search, {damping, false, keeps ? &bend : nullptr, false, little, creeping, patience, most});
-  bool nothing = gone_for_nothing(search);
+  bool nothing = gone_for_nothing(search, weighed_before);
   if (!nothing) find_weakest(search.problem, state.options->task, weight, bend.weakest);
-  if (!nothing && !search.met && weighted && bend.weakest.s > before) {
+  if (!nothing && !search.met && weighted && bend.weakest.s > s_before) {
     minimise(search, {Real(0.001) * weight, false, nullptr, false, little, creeping, patience, most});
-    nothing = gone_for_nothing(search);
+    nothing = gone_for_nothing(search, weighed_before);
     if (!nothing) find_weakest(search.problem, state.options->task, weight, bend.weakest);
   }
   if (nothing) look_along(search, state.last, bend);
@@ -478,7 +226,6 @@ inline Real falling(Real x, Real low, Real high) {
   } else {
     start(search, state, state.last);
   }
-  search.weighed_before = weighed(state);
   search.problem.damping = step_damping(search, care);
   set_pull(search, false);
   std::int32_t most = state.options->max_iterations;
