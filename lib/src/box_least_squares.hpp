@@ -18,6 +18,7 @@ struct BoxProblem {
   Real damping;           ///< > 0
   Real pull[max_joints];
   Real low[max_joints], high[max_joints];
+  std::int32_t budget;    ///< what is left of the tick's work, in thirds of a factorization
 };
 
 inline bool has(std::uint32_t mask, std::int32_t j) { return ((mask >> static_cast<std::uint32_t>(j)) & 1U) != 0U; }
@@ -117,7 +118,7 @@ inline Real slope_of(const BoxProblem& problem, std::int32_t j) {
 
 /// Factors the problem over the unknowns in `free_mask`, the others (if any) at x, and makes R z = right of it for the
 /// free ones, in their order.
-inline void factor_free(const BoxProblem& problem, std::uint32_t free_mask, const Real* x, Stack& stack, Real* right) {
+inline void factor_free(BoxProblem& problem, std::uint32_t free_mask, const Real* x, Stack& stack, Real* right) {
   Real b[7];
   stack.equations = problem.rows;
   for (std::int32_t i = 0; i < problem.rows; ++i) b[i] = problem.b[i];
@@ -132,10 +133,11 @@ inline void factor_free(const BoxProblem& problem, std::uint32_t free_mask, cons
   }
   stack.size = size;
   factor(stack, problem.damping, right, b);
+  problem.budget -= 3;
 }
 
 /// The minimum over all unknowns, free of bounds.
-[[gnu::noinline]] void solve_free(const BoxProblem& problem, Real* x) {
+[[gnu::noinline]] void solve_free(BoxProblem& problem, Real* x) {
   Stack stack;
   Real right[max_joints];
   factor_free(problem, (1U << static_cast<std::uint32_t>(problem.columns)) - 1U, nullptr, stack, right);
@@ -216,8 +218,8 @@ inline std::int32_t place(std::uint32_t free_mask, std::int32_t j) {
 
 /// Solves the problem by an active set (Lawson, Hanson 1974, ch. 23; Stark, Parker 1995): each round either meets a
 /// bound, which then holds, or lets go of the one that the residual pulls away from the hardest. The objective falls in
-/// every round, so x is usable at the bound of rounds too.
-[[gnu::noinline]] void solve(const BoxProblem& problem, Real* x) {
+/// every round, so x is usable at the bound of rounds, or of the tick's work, too.
+[[maybe_unused, gnu::noinline]] void solve(BoxProblem& problem, Real* x) {
   std::uint32_t movable = 0;
   for (std::int32_t j = 0; j < problem.columns; ++j) {
     x[j] = 0;
@@ -227,12 +229,13 @@ inline std::int32_t place(std::uint32_t free_mask, std::int32_t j) {
   Stack stack;
   Real right[max_joints];
   factor_free(problem, free_mask, x, stack, right);
-  for (std::int32_t round = 0; round < 3 * problem.columns; ++round) {
+  for (std::int32_t round = 0; round < 3 * problem.columns && problem.budget > 0; ++round) {
     Real z[max_joints];
     solve_upper(stack, right, z);
     const std::int32_t hit = advance(problem, free_mask, z, x);
     if (hit >= 0) {
       hold(stack, right, place(free_mask, hit), x[hit]);
+      --problem.budget;
       free_mask &= ~(1U << static_cast<std::uint32_t>(hit));
       continue;
     }

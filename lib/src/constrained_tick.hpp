@@ -17,6 +17,11 @@ constexpr Real furthest_leap = Real(0.05);
 /// the best is to be made of it.
 constexpr Real half = Real(0.5);
 constexpr Real little = Real(1e-5);
+/// The work that one of TickOptions::max_iterations stands for, an evaluation and a factorization, in thirds of the
+/// latter.
+constexpr std::int32_t per_iteration = evaluation + 3;
+/// Enough for an iteration with several factorizations.
+constexpr std::int32_t one_step = 20;
 
 /// Whether the target is further from the base than the arm is long. Slides may be of any length.
 inline bool beyond_reach(const TickState& state) {
@@ -24,6 +29,9 @@ inline bool beyond_reach(const TickState& state) {
   const Real reach = Real(1.0001) * state.arm->reach_m + state.options->position_tolerance_m;
   return state.arm->prismatic_mask == 0U && dot(p, p) > reach * reach;
 }
+
+/// With less weight on the rotation than this it is given up for the position.
+constexpr Real weighted_below = Real(0.05);
 
 /// Whether a tick can meet the pose from its last joints.
 enum class Chance : std::int32_t {
@@ -37,7 +45,7 @@ enum class Chance : std::int32_t {
 /// sixteen times its square, nor with the rounding of the direction. Not within a step: no step within the tick's bounds
 /// solves the linear model, since a damped solution is no longer than any exact one (a factor of eight is for the
 /// curvature).
-[[gnu::noinline]] Chance chance(const Search& search, const Bend* bend) {
+[[gnu::noinline]] Chance chance(Search& search, const Bend& bend) {
   const TickState& state = *search.state;
   if (beyond_reach(state)) return Chance::none;
   Real step[max_joints];
@@ -49,14 +57,14 @@ enum class Chance : std::int32_t {
     const Real up = (state.high[j] - state.q[j]) / joint_unit(state, j);
     const Real wider = down > up ? down : up;
     room += wider * wider;
-    if (bend != nullptr) along += bend->weakest.v[j] * step[j];
+    if (bend.of_last) along += bend.weakest.v[j] * step[j];
   }
   const Real length2 = square(step, search.problem.columns);
-  if (bend != nullptr && magnitude(bend->along) >= Real(0.05)) {
-    const Real s = bend->weakest.s;
+  if (bend.of_last && magnitude(bend.along) >= Real(0.05)) {
+    const Real s = bend.weakest.s;
     constexpr Real rounding = sizeof(Real) == sizeof(double) ? Real(1e-15) : Real(5e-7);
     const Real slack = Real{16} * (length2 - along * along) + rounding * square_root(search.cost) / s;
-    if (s * s + Real{2} * (bend->along * bend->wanted + magnitude(bend->along) * slack) < Real{0}) return Chance::none;
+    if (s * s + Real{2} * (bend.along * bend.wanted + magnitude(bend.along) * slack) < Real{0}) return Chance::none;
   }
   return length2 > Real{64} * room ? Chance::not_within_a_step : Chance::some;
 }
@@ -81,7 +89,7 @@ inline Status classify(const Search& search) {
   if (state.limit_mask != 0U) return Status::joint_limited;
   if (state.step_mask != 0U && !(state.smallest_singular_value < near_singular_below)) return Status::step_limited;
   if (state.smallest_singular_value < near_singular_below) return Status::near_singular;
-  return state.evaluations < state.options->max_iterations ? Status::out_of_reach : Status::not_converged;
+  return search.cut ? Status::not_converged : Status::out_of_reach;
 }
 
 /// 1 below `low`, 0 above `high`, a straight line between.
@@ -93,10 +101,12 @@ inline Real falling(Real x, Real low, Real high) {
 [[gnu::noinline]] void look_along(Search& search, const Real* q, Bend& bend) {
   TickState& state = *search.state;
   Look look;
-  look_at(state, q, look);
+  look_at(search, q, look);
   search.rotation_weight = 1;
   settle(search, q, look);
+  bend.of_last = search.there;
   find_weakest(search.problem, state.options->task, Real{1}, bend.weakest);
+  search.problem.budget -= 3;
   slope_of_weakest(state, look.frame, look.coordinates, bend.weakest, bend.slope);
   bend.along = 0;
   for (std::int32_t j = 0; j < search.problem.columns; ++j) bend.along += bend.slope[j] * bend.weakest.v[j];
@@ -116,23 +126,30 @@ inline Real falling(Real x, Real low, Real high) {
   Real rest[max_joints];
   for (std::int32_t j = 0; j < search.problem.columns; ++j) rest[j] = state.q[j];
   const Real sum = bend.weakest.s + square_root(discriminant);
-  const std::int32_t most = state.options->max_iterations;
-  for (int root = 0; root < 2 && !search.met && state.evaluations < most; ++root) {
+  for (int root = 0; root < 2 && !search.met && search.problem.budget > 0; ++root) {
     const Real leap = root == 0 ? Real{2} * bend.wanted / sum : -sum / bend.along;
     if (!(magnitude(leap) < furthest_leap)) return;
     for (std::int32_t j = 0; j < search.problem.columns; ++j) {
       state.q[j] = within_bounds(state, j, rest[j] + leap * bend.weakest.v[j] * joint_unit(state, j));
     }
-    start(search, state, state.q);
-    minimise(search, {care, true, nullptr, false, half, half, 2, most});
+    start(search, state.q);
+    minimise(search, {care, nullptr, false, false, half, half, max_tick_iterations, 0});
   }
+}
+
+/// Whether the search rests on step limits on its way past a wrist's singularity, where hardly anything bends and there is
+/// no fold to leave.
+inline bool passes_wrist(const Search& search, const Bend& bend) {
+  find_pushing(search);
+  return bend.of_last && magnitude(bend.along) < Real(0.04) && search.state->step_mask != 0U &&
+         search.predicted > Real(0.9) * search.cost;
 }
 
 /// For a search that rests near a fold without meeting the pose, since there the error hardly has a slope: goes to where
 /// the second-order model of what the weakest direction answers meets the pose.
 [[gnu::noinline]] void leave_fold(Search& search, Bend& bend) {
   constexpr Real nearby = furthest_leap * furthest_leap;
-  if (search.cost > nearby * nearby || !(search.state->evaluations < search.state->options->max_iterations)) return;
+  if (search.cost > nearby * nearby || search.problem.budget <= 0 || passes_wrist(search, bend)) return;
   look_along(search, search.state->q, bend);
   const Real s = bend.weakest.s;
   Real discriminant = s * s + Real{2} * bend.along * bend.wanted;
@@ -142,26 +159,35 @@ inline Real falling(Real x, Real low, Real high) {
   if (s < near_singular_below && discriminant >= Real{0}) search_roots(search, bend, discriminant);
 }
 
-/// Starts over from the last joints, if the search is not `there`. What the weakest singular direction does decides how
-/// to go on. If it turns the flange, or hardly bends (a wrist's singularity), the singularity may be passed. Where the arm
-/// folds the singular value is kept from falling below a margin, so that the way back is the way that it came. The
-/// caller's weights hold but close to a fold, where the wrist would bend for nothing: there errors are alike. Between the
-/// two the weight goes over without a jump, or ticks on either side of one would undo each other for ever. Returns
-/// whether the singular value is to be kept.
-[[gnu::noinline]] bool start_over(Search& search, Bend& bend, bool there) {
+/// Starts over from the last joints. What the weakest singular direction does there decides how to go on. If it turns the
+/// flange, or hardly bends (a wrist's singularity), the singularity may be passed. Where the arm folds the singular value
+/// is kept from falling below a margin, so that the way back is the way that it came. The caller's weights hold but close
+/// to a fold, or where an arm comes from one too late to hold the position: there the wrist would bend for nothing, and
+/// errors are alike. Between the two the weight goes over without a jump, or ticks on either side of one would undo each
+/// other for ever. Returns whether the singular value is to be kept.
+[[gnu::noinline]] bool start_over(Search& search, Bend& bend, Chance found) {
   constexpr Real margin = Real(0.005);
   const TickState& state = *search.state;
-  if (!there) look_along(search, state.last, bend);
+  if (!bend.of_last) {
+    look_along(search, state.last, bend);
+  } else if (!search.there) {
+    start(search, state.last);
+  }
   const Real s = bend.weakest.s;
   bend.least = s < margin ? s : margin;
   if (state.options->task == Task::pose) {
     const Real callers = state.options->rotation_weight / state.options->position_weight;
-    Real share = bend.fold * falling(s, Real(0.04), Real(0.06));
+    const Real shift = state.error.position_m / state.length_m;
+    const Real close = falling(s, Real(0.04), Real(0.06));
+    const Real late = found == Chance::not_within_a_step ? falling(s, Real(0.1), Real(0.15)) *
+                                                               falling(state.error.rotation_rad, Real(0.5) * shift, shift)
+                                                         : Real{0};
+    Real share = bend.fold * (close > late ? close : late);
     share *= share;
     weigh_rotation(search, callers + share * share * (Real{1} - callers));
   }
   // With hardly a singular value left there is no side to keep to.
-  return (bend.fold > Real(0.5) || s >= Real(0.1)) && s > Real(1e-6);
+  return (bend.fold > Real(0.5) || (s >= Real(0.1) && search.rotation_weight >= weighted_below)) && s > Real(1e-6);
 }
 
 /// The error's square by the caller's weights.
@@ -183,29 +209,26 @@ inline Real weighed(const TickState& state) {
   return false;
 }
 
-/// The best that can be had of a pose that is not met, in `most` evaluations. Where a singularity is passed the weakest
-/// direction rests while its singular value falls, and is caught up while that rises. `there`: the search has not left
-/// the last joints, and bend is of them; in the end it is of the result.
-[[gnu::noinline]] void make_the_best(Search& search, Bend& bend, bool there, std::int32_t most) {
+/// The best that can be had of a pose that is not met, in four iterations (two where it has no chance at all) and what is
+/// left of the work, but at least one. In the end bend is of the result.
+[[gnu::noinline]] void make_the_best(Search& search, Bend& bend, Chance found) {
   TickState& state = *search.state;
-  const bool keeps = start_over(search, bend, there);
+  const bool keeps = start_over(search, bend, found);
   const Real weighed_before = weighed(state);
   const Real s_before = bend.weakest.s;
   const Real weight = search.rotation_weight;
-  const bool weighted = weight < Real(0.05);
+  const bool weighted = weight < weighted_below;
   // A wrist comes round only slowly.
-  const std::int32_t patience = weighted ? 6 : 2;
   const Real creeping = weighted ? Real(0.003) : Real(0.02);
-  const Real damping = weighted ? Real{2} * weight : care;
-  minimise(search, {damping, false, keeps ? &bend : nullptr, false, little, creeping, patience, most});
-  bool nothing = gone_for_nothing(search, weighed_before);
-  if (!nothing) find_weakest(search.problem, state.options->task, weight, bend.weakest);
-  if (!nothing && !search.met && weighted && bend.weakest.s > s_before) {
-    minimise(search, {Real(0.001) * weight, false, nullptr, false, little, creeping, patience, most});
-    nothing = gone_for_nothing(search, weighed_before);
-    if (!nothing) find_weakest(search.problem, state.options->task, weight, bend.weakest);
+  const Real damping = weighted ? (keeps ? Real{2} * weight : weight) : care;
+  if (search.problem.budget < one_step) search.problem.budget = one_step;
+  minimise(search, {damping, &bend, keeps, false, little, creeping, found == Chance::none ? 2 : 4, 0});
+  if (gone_for_nothing(search, weighed_before)) {
+    start(search, state.last);
+    bend.weakest.s = s_before;
+  } else {
+    find_weakest(search.problem, state.options->task, weight, bend.weakest);
   }
-  if (nothing) look_along(search, state.last, bend);
 }
 
 /// The tick where limits, singularities or free joints matter. First the pose is tried with all errors alike; if that
@@ -213,35 +236,35 @@ inline Real weighed(const TickState& state) {
 [[gnu::noinline]] Status constrained_tick(TickState& state) {
   // Nearer to a singularity than this, it is looked at before the pose is tried.
   constexpr Real near = Real(0.05);
+  const std::int32_t all_work = per_iteration * state.options->max_iterations;
   Search search;
   Bend bend;
   search.state = &state;
   search.problem.rows = task_rank(state.options->task);
   search.problem.columns = state.arm->joint_count;
+  search.problem.budget = all_work - evaluation * state.evaluations;
+  search.predicted = 0;
   search.met = false;
+  bend.of_last = false;
   const bool posture = state.options->posture_gain > Real{0} && search.problem.columns > search.problem.rows;
-  bool there = state.smallest_singular_value < near;
-  if (there) {
+  if (state.smallest_singular_value < near) {
     look_along(search, state.last, bend);
   } else {
-    start(search, state, state.last);
+    start(search, state.last);
   }
   search.problem.damping = step_damping(search, care);
   set_pull(search, false);
-  std::int32_t most = state.options->max_iterations;
-  const Chance found = posture ? Chance::some : chance(search, there ? &bend : nullptr);
+  const Chance found = posture ? Chance::some : chance(search, bend);
   if (found == Chance::some) {
-    there = false;
-    // A quarter of the evaluations is left for what comes after it.
-    minimise(search, {care, true, nullptr, posture, half, half, 2, (3 * most + 3) / 4});
+    // Half of the work is left for what comes after it, unless it goes well.
+    minimise(search, {care, nullptr, false, posture, half, half, max_tick_iterations, all_work / 2});
     if (!search.met) leave_fold(search, bend);
   }
-  // What cannot be had is not worth more.
-  if (found == Chance::none && state.evaluations + 2 < most) most = state.evaluations + 2;
   if (search.met) {
     find_weakest(search.problem, state.options->task, Real{1}, bend.weakest);
   } else {
-    make_the_best(search, bend, there, most);
+    // What cannot be had is not worth more.
+    make_the_best(search, bend, found);
   }
   state.smallest_singular_value = bend.weakest.s;
   if (!search.met) find_pushing(search);

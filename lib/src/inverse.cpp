@@ -72,9 +72,6 @@ std::uint32_t outside_limits(const Arm<Real>& arm, const Real* q) {
   return mask;
 }
 
-// An arm without lengths turns only; any unit will do.
-Real length_unit(const Arm<Real>& arm) { return arm.reach_m > Real(1e-6) ? arm.reach_m : Real{1}; }
-
 }  // namespace
 
 bool tick_valid(const Arm<Real>& arm, const TickOptions<Real>& options, const Pose<Real>& target) noexcept {
@@ -88,7 +85,7 @@ TickOptions<Real> default_tick_options(const Arm<Real>& arm) noexcept {
   for (std::int32_t j = 0; j < arm.joint_count; ++j) options.max_step[j] = largest;
   options.position_weight = 1;
   options.rotation_weight = Real(0.001);
-  options.max_iterations = 32;
+  options.max_iterations = 14;
   options.task = Task::pose;
   return options;
 }

@@ -13,6 +13,11 @@ constexpr Real longest_step = Real(0.3);
 /// What keeps the equations of a step regular; a direction with a smaller singular value is left alone.
 constexpr Real least_damping = sizeof(Real) == sizeof(double) ? Real(1e-8) : Real(1e-4);
 
+/// The work of an evaluation of the arm with what follows from it, in thirds of a factorization.
+constexpr std::int32_t evaluation = 5;
+/// What a minimisation may lose at first: iterations that fail or gain little.
+constexpr std::int32_t all_patience = 2;
+
 /// A minimisation's joints, and the linear model there.
 struct Search {
   TickState* state;
@@ -20,8 +25,11 @@ struct Search {
   Real rotation_weight;
   Real cost;             ///< |weighted error|^2 at the joints
   Real scale;            ///< of the damping
+  Real predicted;        ///< what the last step's linear model was to leave of the cost
   std::int32_t patience;
   bool met;
+  bool there;            ///< at the last joints
+  bool cut;              ///< ended by the bound of the tick's work
 };
 
 /// What one evaluation of the arm shows. Large, hence on the stack only of what uses it.
@@ -38,24 +46,27 @@ struct Bend {
   Real along;               ///< the slope along the direction
   Real wanted;              ///< the error's component that the direction answers
   Real fold;                ///< 1 on a straight elbow: the direction shifts the flange and bends; 0 on a wrist; else between
+  bool of_last;             ///< at the last joints
   Real least;               ///< a minimisation with it may not take the singular value below this
 };
 
-/// How a minimisation goes about it.
+/// How a minimisation goes about it: to meet the pose, or to make the best of it by what the weakest direction does.
 struct Aim {
-  Real damping;           ///< of a step, the weight of the joints' motion; times the error's root if `by_error`
-  bool by_error;
-  const Bend* keep;       ///< or null
+  Real damping;           ///< of a step, the weight of the joints' motion; times the error's root if the pose is to be met
+  const Bend* bend;       ///< what to make the best by; null if the pose is to be met
+  bool keeps;             ///< the singular value from falling below bend's least
   bool posture;           ///< the first step goes to the posture as well
   Real promise;           ///< the least part of the cost that the linear model has to take away for a step to be tried
   Real creeping;          ///< likewise, after the first step: what comes more slowly can wait for the next tick
-  std::int32_t patience;  ///< iterations that fail or gain little
-  std::int32_t most;      ///< evaluations of the arm
+  std::int32_t most;      ///< iterations
+  std::int32_t reserve;   ///< what is to be left of the work, once it does not go well
 };
 
-inline void look_at(TickState& state, const Real* q, Look& look) {
+inline void look_at(Search& search, const Real* q, Look& look) {
+  TickState& state = *search.state;
   evaluate(*state.arm, q, look.frame, look.coordinates);
   ++state.evaluations;
+  search.problem.budget -= evaluation;
   pose_error(state.target, look.frame, state.options->task, look.error);
 }
 
@@ -65,10 +76,11 @@ inline Real square(const Real* b, std::int32_t count) {
   return sum;
 }
 
-/// Makes q the search's joints.
+/// Makes q the search's joints: state.last itself where it goes back to these.
 inline void settle(Search& search, const Real* q, const Look& look) {
   TickState& state = *search.state;
   BoxProblem& problem = search.problem;
+  search.there = q == state.last;
   for (std::int32_t j = 0; j < state.arm->joint_count; ++j) state.q[j] = q[j];
   state.error = look.error;
   to_task(state, look.frame, search.rotation_weight, look.error.vector, problem.b);
@@ -88,10 +100,10 @@ inline void weigh_rotation(Search& search, Real weight) {
 }
 
 /// Starts a search with all errors alike at q.
-[[gnu::noinline]] void start(Search& search, TickState& state, const Real* q) {
+[[gnu::noinline]] void start(Search& search, const Real* q) {
   search.rotation_weight = 1;
   Look look;
-  look_at(state, q, look);
+  look_at(search, q, look);
   settle(search, q, look);
 }
 
@@ -136,12 +148,13 @@ inline void set_room(Search& search) {
   --problem.rows;
 }
 
-/// What the step limits leave of joint j's way in one direction, or 0 if the arm's limit ends it: a joint that has used
-/// up its step holds nobody else back.
+/// What the step limits and the longest step leave of joint j's way in one direction, or 0 if the arm's limit ends it: a
+/// joint that has used up its step holds nobody else back.
 inline Real step_room(const TickState& state, std::int32_t j, bool up) {
   if (limit_ends(state, j, up)) return 0;
   const Real room = (up ? state.high[j] - state.q[j] : state.q[j] - state.low[j]) / joint_unit(state, j);
-  return room > Real(1e-9) ? room : Real{0};
+  if (!(room > Real(1e-9))) return 0;
+  return room < longest_step ? room : longest_step;
 }
 
 /// Raises the damping, to little more than the least, until the step fits between the step limits: unlike one that is cut
@@ -163,7 +176,11 @@ inline Real step_room(const TickState& state, std::int32_t j, bool up) {
     problem.damping = square_root(steepest - Real{4});
     raised = true;
   }
-  for (int round = 0; round < 8; ++round) {
+  // A step that is hardly too long may as well be cut short as a whole.
+  constexpr Real almost = Real(1.2);
+  Real square_before = 0;
+  Real part_before = 0;
+  for (int round = 0; round < 8 && problem.budget > 0; ++round) {
     solve_free(problem, step);
     Real worst = 0;
     for (std::int32_t j = 0; j < problem.columns; ++j) {
@@ -172,8 +189,20 @@ inline Real step_room(const TickState& state, std::int32_t j, bool up) {
     }
     if (!(worst > Real{1})) break;
     raised = true;
-    const Real factor = Real(1.1) * square_root(worst);
-    problem.damping *= factor > Real(1.5) ? factor : Real(1.5);
+    if (worst < almost) {
+      for (std::int32_t j = 0; j < problem.columns; ++j) step[j] /= worst;
+      break;
+    }
+    // What part of the step fits is about linear in the damping's square (Hebden 1973): at first as if through the
+    // origin, then through the last two rounds.
+    const Real part = Real{1} / worst;
+    const Real square = problem.damping * problem.damping;
+    Real more = square * (worst - Real{1});
+    if (round > 0 && part > part_before) more = (square - square_before) * (Real{1} - part) / (part - part_before);
+    const Real most = Real{10} * square * worst;
+    square_before = square;
+    part_before = part;
+    problem.damping = square_root(square + Real(1.2) * (more < most ? more : most));
   }
   return raised;
 }
@@ -200,21 +229,31 @@ inline Real within_bounds(const TickState& state, std::int32_t j, Real q) {
   return q < state.low[j] ? state.low[j] : (q > state.high[j] ? state.high[j] : q);
 }
 
-/// Goes the step if that meets the pose, or brings some of what the linear model `predicted` of the cost, and adapts the
-/// damping and the patience; one towards the posture is gone whatever it costs. Returns whether it went.
-[[gnu::noinline]] bool go(Search& search, const Aim& aim, const Real* step, Real predicted, bool posture) {
+/// Whether the singular value of bend, taken as linear from the last joints, is larger at q.
+inline bool rises(const TickState& state, const Bend& bend, const Real* q) {
+  Real change = 0;
+  for (std::int32_t j = 0; j < state.arm->joint_count; ++j) {
+    change += bend.slope[j] * (q[j] - state.last[j]) / joint_unit(state, j);
+  }
+  return change > Real{0};
+}
+
+/// Goes the step if that meets the pose, or brings some of what the linear model predicted of the cost, and adapts the
+/// damping and the patience; one towards the posture is gone whatever it costs. Where a singularity is passed the weakest
+/// direction rests while its singular value falls, and is caught up while that rises. Returns whether it went.
+[[gnu::noinline]] bool go(Search& search, const Aim& aim, const Real* step, bool posture) {
   TickState& state = *search.state;
   Real q[max_joints];
   for (std::int32_t j = 0; j < search.problem.columns; ++j) {
     q[j] = within_bounds(state, j, state.q[j] + step[j] * joint_unit(state, j));
   }
   Look look;
-  look_at(state, q, look);
+  look_at(search, q, look);
   search.met = met(state, look.error);
   Real b[6];
   to_task(state, look.frame, search.rotation_weight, look.error.vector, b);
   const Real cost = square(b, search.problem.rows);
-  const Real ratio = (search.cost - cost) / (search.cost - predicted);
+  const Real ratio = (search.cost - cost) / (search.cost - search.predicted);
   const bool goes = search.met || posture || ratio > Real(0.001);
   // A step that does as predicted has to halve the cost to count as a gain, one that does not to quarter it.
   const Real enough = ratio > Real(0.75) ? Real(0.5) : Real(0.25);
@@ -222,9 +261,13 @@ inline Real within_bounds(const TickState& state, std::int32_t j, Real q) {
     if (!goes || !(cost < enough * search.cost)) --search.patience;
     if (!(ratio > Real(0.25))) {
       // A damping that does not go by the error may be far too small.
-      search.scale *= aim.by_error || ratio > Real{-10} ? Real{10} : Real{1000};
-    } else if (ratio > Real(0.75) && aim.by_error) {
-      search.scale *= Real(0.1);
+      search.scale *= aim.bend == nullptr || ratio > Real{-10} ? Real{10} : Real{1000};
+    } else if (ratio > Real(0.75) && !aim.keeps) {
+      if (aim.bend == nullptr || rises(state, *aim.bend, q)) {
+        search.scale *= Real(0.1);
+      } else {
+        search.patience -= 2;
+      }
     }
   }
   if (goes) settle(search, q, look);
@@ -233,30 +276,33 @@ inline Real within_bounds(const TickState& state, std::int32_t j, Real q) {
 
 /// Damped least squares (Levenberg 1944, Marquardt 1963) within the bounds, from the search's joints. Stops when the
 /// pose is met, when the linear model promises nothing, when a step has gone to the step limit, when patience is lost,
-/// or at the bound of evaluations.
+/// or when the work is done that the tick may do.
 [[gnu::noinline]] void minimise(Search& search, const Aim& aim) {
   TickState& state = *search.state;
   BoxProblem& problem = search.problem;
   bool posture = aim.posture;
   Real promise = aim.promise;
   search.scale = aim.damping;
-  search.patience = aim.patience;
+  search.patience = all_patience;
   search.met = met(state, state.error) && !posture;
-  while (!search.met && search.patience >= 0 && state.evaluations < aim.most) {
-    problem.damping = aim.by_error ? step_damping(search, search.scale) : search.scale;
+  search.cut = false;
+  for (std::int32_t n = 0; n < aim.most && !search.met && search.patience >= 0; ++n) {
+    search.cut = problem.budget <= (search.patience < all_patience ? aim.reserve : 0);
+    if (search.cut) return;
+    problem.damping = aim.bend == nullptr ? step_damping(search, search.scale) : search.scale;
     if (posture || problem.damping < least_damping) problem.damping = least_damping;
     set_pull(search, posture);
     set_room(search);
     Real step[max_joints];
-    const bool fitted = aim.keep != nullptr && fit_damping(search, step);
-    solve_kept(search, aim.keep, step);
-    Real predicted = 0;
+    const bool fitted = aim.keeps && fit_damping(search, step);
+    solve_kept(search, aim.keeps ? aim.bend : nullptr, step);
+    search.predicted = 0;
     for (std::int32_t i = 0; i < problem.rows; ++i) {
       const Real left = residual(problem, i, step);
-      predicted += left * left;
+      search.predicted += left * left;
     }
-    if (!posture && !(search.cost - predicted > promise * search.cost)) return;
-    if (go(search, aim, step, predicted, posture) && fitted) return;
+    if (!posture && !(search.cost - search.predicted > promise * search.cost)) return;
+    if (go(search, aim, step, posture) && fitted) return;
     posture = false;
     promise = aim.creeping;
   }

@@ -17,7 +17,7 @@ constexpr Real same_solution = sizeof(Real) == sizeof(double) ? Real(1e-3) : Rea
 
 struct Search {
   const Real* posture;
-  Refinement how;
+  Goal goal;
   std::uint32_t periodic_mask;  ///< joints for which a full turn of the reading changes nothing
 };
 
@@ -43,7 +43,7 @@ std::uint32_t periodic_joints(const Arm<Real>& arm) {
 
 // Moves each periodic joint by full turns to the allowed one nearest to the posture. Returns whether all limits hold.
 bool choose_turns(const Search& search, Real* q) {
-  const Arm<Real>& arm = *search.how.arm;
+  const Arm<Real>& arm = *search.goal.arm;
   for (std::int32_t j = 0; j < arm.joint_count; ++j) {
     const bool has_min = bit(arm.min_mask, j);
     const bool has_max = bit(arm.max_mask, j);
@@ -60,10 +60,10 @@ bool choose_turns(const Search& search, Real* q) {
 
 Real joint_distance(const Search& search, const Real* a, const Real* b, bool modulo) {
   Real largest = 0;
-  for (std::int32_t j = 0; j < search.how.arm->joint_count; ++j) {
+  for (std::int32_t j = 0; j < search.goal.arm->joint_count; ++j) {
     Real difference = a[j] - b[j];
     if (modulo && bit(search.periodic_mask, j)) difference -= full_turn * whole(difference / full_turn);
-    if (bit(search.how.arm->prismatic_mask, j) && search.how.arm->reach_m > Real(1e-6)) difference /= search.how.arm->reach_m;
+    difference /= joint_unit(search.goal, j);
     if (magnitude(difference) > largest) largest = magnitude(difference);
   }
   return largest;
@@ -73,19 +73,19 @@ bool meets(const Search& search, const Real* q) {
   Frame<Real> frame;
   PoseError error;
   bool met = false;
-  evaluate(*search.how.arm, q, frame);
-  squared_error(search.how, frame, error, met);
+  evaluate(*search.goal.arm, q, frame);
+  squared_error(search.goal, frame, error, met);
   return met;
 }
 
 // Refines a starting value and adds what it leads to, if that is new; a full list keeps the nearest. The list is
 // sorted at all times.
 void consider(const Search& search, Real* q, Solutions<Real>& found) {
-  const std::int32_t joints = search.how.arm->joint_count;
-  if (!refine(search.how, q)) return;
+  const std::int32_t joints = search.goal.arm->joint_count;
+  if (!refine(search.goal, q)) return;
   if (!choose_turns(search, q)) return;
   // Full turns are added in rounded numbers.
-  if (!readings_valid(*search.how.arm, q) || !meets(search, q)) return;
+  if (!readings_valid(*search.goal.arm, q) || !meets(search, q)) return;
   for (std::int32_t k = 0; k < found.count; ++k) {
     if (joint_distance(search, q, found.q[k], true) < same_solution) return;
   }
@@ -148,12 +148,12 @@ constexpr Real near_axis = Real(0.05);
 
 void consider_coordinates(const Search& search, const Real* coordinates, Solutions<Real>& found) {
   Real q[max_joints] = {};
-  if (readings_of(*search.how.arm, coordinates, q)) consider(search, q, found);
+  if (readings_of(*search.goal.arm, coordinates, q)) consider(search, q, found);
 }
 
 void try_departure(const Search& search, const Screws& screws, const Departure& departure, StartingValues& values,
                    Solutions<Real>& found) {
-  closed_form(screws, search.how.target, departure, values);
+  closed_form(screws, search.goal.target, departure, values);
   for (std::int32_t k = 0; k < values.count; ++k) consider_coordinates(search, values.coordinates[k], found);
 }
 
@@ -163,7 +163,7 @@ void try_closed_form(const Search& search, const Screws& screws, bool first_only
   StartingValues values;
   try_departure(search, screws, {Real{0}, Real{0}, Real{0}}, values, found);
   const bool straight = values.wrist_smallest < nearly_double;
-  const bool above = values.base_radius_m < near_axis * search.how.arm->reach_m;
+  const bool above = values.base_radius_m < near_axis * search.goal.arm->reach_m;
   if (straight || values.smallest < nearly_double) {
     try_departure(search, screws, {Real(0.1), Real{0}, Real{0}}, values, found);
     try_departure(search, screws, {Real(0.3), Real{0}, Real{0}}, values, found);
@@ -181,7 +181,7 @@ void try_closed_form(const Search& search, const Screws& screws, bool first_only
 
 // Fixed pseudo-random joints (Marsaglia 2003, xorshift), within the limits or half a turn or the reach about the posture.
 void restart_joints(const Search& search, std::uint32_t& state, Real* q) {
-  const Arm<Real>& arm = *search.how.arm;
+  const Arm<Real>& arm = *search.goal.arm;
   for (std::int32_t j = 0; j < arm.joint_count; ++j) {
     state ^= state << 13U;
     state ^= state >> 17U;
@@ -208,13 +208,13 @@ void try_restarts(const Search& search, std::int32_t restarts, bool first_only, 
 
 void search_all(const Search& search, std::int32_t restarts, bool first_only, Solutions<Real>& found) {
   Screws screws;
-  read_screws(*search.how.arm, screws);
+  read_screws(*search.goal.arm, screws);
   found.count = 0;
   found.family = screws.family;
   Real q[max_joints];
-  for (std::int32_t j = 0; j < search.how.arm->joint_count; ++j) q[j] = search.posture[j];
+  for (std::int32_t j = 0; j < search.goal.arm->joint_count; ++j) q[j] = search.posture[j];
   consider(search, q, found);
-  if (screws.family != Family::general && search.how.options->task == Task::pose) {
+  if (screws.family != Family::general && search.goal.options->task == Task::pose) {
     try_closed_form(search, screws, first_only, found);
   }
   try_restarts(search, restarts, first_only, found);
@@ -226,10 +226,10 @@ bool prepare(const Arm<Real>& arm, const SolutionOptions<Real>& options, const P
   if (options.restarts < 0 || options.restarts > max_restarts) return false;
   search.posture = posture;
   search.periodic_mask = periodic_joints(arm);
-  search.how.arm = &arm;
-  search.how.options = &options.tick;
-  search.how.length_m = arm.reach_m > Real(1e-6) ? arm.reach_m : Real{1};
-  to_frame(target, search.how.target);
+  search.goal.arm = &arm;
+  search.goal.options = &options.tick;
+  search.goal.length_m = length_unit(arm);
+  to_frame(target, search.goal.target);
   return true;
 }
 

@@ -35,14 +35,14 @@ inline void tilt_of_x(const Frame<Real>& frame, Real* tilt) {
 
 /// The components that the task asks for of a displacement of the flange: lengths over the arm's, angles times
 /// `rotation_weight`.
-inline void to_task(const TickState& state, const Frame<Real>& frame, Real rotation_weight, const Real* displacement,
+inline void to_task(const Goal& goal, const Frame<Real>& frame, Real rotation_weight, const Real* displacement,
                     Real* component) {
-  const Real per_length = Real{1} / state.length_m;
+  const Real per_length = Real{1} / goal.length_m;
   const Real* turn = displacement + 3;
   component[0] = displacement[0] * per_length;
   component[1] = displacement[1] * per_length;
   component[2] = displacement[2] * per_length;
-  switch (state.options->task) {
+  switch (goal.options->task) {
     case Task::pose:
       for (int k = 0; k < 3; ++k) component[3 + k] = turn[k] * rotation_weight;
       return;
@@ -64,11 +64,11 @@ inline void to_task(const TickState& state, const Frame<Real>& frame, Real rotat
 }
 
 /// The linear functional of displacements that takes the even components' product with u: the transpose of to_task().
-inline void from_task(const TickState& state, const Frame<Real>& frame, const Real* u, Real* functional) {
-  const Real per_length = Real{1} / state.length_m;
+inline void from_task(const Goal& goal, const Frame<Real>& frame, const Real* u, Real* functional) {
+  const Real per_length = Real{1} / goal.length_m;
   for (int k = 0; k < 3; ++k) functional[k] = u[k] * per_length;
   for (int k = 3; k < 6; ++k) functional[k] = 0;
-  switch (state.options->task) {
+  switch (goal.options->task) {
     case Task::pose:
       for (int k = 3; k < 6; ++k) functional[k] = u[k];
       return;
@@ -89,19 +89,19 @@ inline void from_task(const TickState& state, const Frame<Real>& frame, const Re
 }
 
 /// Rows of the task's Jacobian by unit-free readings, from the one by joint coordinate.
-inline void linearise(const TickState& state, const Frame<Real>& frame, const Jacobian<Real>& coordinates,
+inline void linearise(const Goal& goal, const Frame<Real>& frame, const Jacobian<Real>& coordinates,
                       Real rotation_weight, BoxProblem& problem) {
-  const Arm<Real>& arm = *state.arm;
+  const Arm<Real>& arm = *goal.arm;
   for (std::int32_t j = 0; j < arm.joint_count; ++j) {
     Real column[6] = {0, 0, 0, 0, 0, 0};
-    const Real unit = joint_unit(state, j);
+    const Real unit = joint_unit(goal, j);
     for (std::int32_t i = 0; i < arm.joint_count; ++i) {
       if (arm.coupled == 0 && i != j) continue;
       const Real ratio = unit * arm.map[i][j];
       for (int k = 0; k < 6; ++k) column[k] += ratio * coordinates.column[i][k];
     }
     Real component[6];
-    to_task(state, frame, rotation_weight, column, component);
+    to_task(goal, frame, rotation_weight, column, component);
     for (std::int32_t i = 0; i < problem.rows; ++i) problem.row[i][j] = component[i];
   }
 }

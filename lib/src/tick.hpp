@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Private to lib/src; include after real.hpp. What the two halves of a servo tick share.
+// Private to lib/src; include after real.hpp. What a search for joints goes by, and a servo tick's state.
 #pragma once
 
 #include "chain.hpp"
@@ -11,12 +11,16 @@
 namespace mdhcal {
 namespace {
 
-/// A tick under way. Joints in readings [rad] or [m].
-struct TickState {
+/// What joints are searched for.
+struct Goal {
   const Arm<Real>* arm;
-  const TickOptions<Real>* options;
+  const TickOptions<Real>* options;      ///< tolerances and task
   Frame<Real> target;
   Real length_m;                         ///< what lengths are divided by
+};
+
+/// A tick under way. Joints in readings [rad] or [m].
+struct TickState : Goal {
   Real low[max_joints], high[max_joints]; ///< where this tick may leave the joints; last joints are inside
   const Real* last;                      ///< last joints
   Real q[max_joints];                    ///< in: last joints; out: the result
@@ -26,14 +30,17 @@ struct TickState {
   std::uint32_t step_mask, limit_mask;   ///< joints that push against a bound
 };
 
-inline bool met(const TickState& state, const PoseError& error) {
-  return error.position_m <= state.options->position_tolerance_m &&
-         error.rotation_rad <= state.options->rotation_tolerance_rad;
+/// The unit of length. An arm without lengths turns only; any will do.
+inline Real length_unit(const Arm<Real>& arm) { return arm.reach_m > Real(1e-6) ? arm.reach_m : Real{1}; }
+
+inline bool met(const Goal& goal, const PoseError& error) {
+  return error.position_m <= goal.options->position_tolerance_m &&
+         error.rotation_rad <= goal.options->rotation_tolerance_rad;
 }
 
 /// The unit that makes a joint's motion unit-free: 1 rad, or the arm's length.
-inline Real joint_unit(const TickState& state, std::int32_t i) {
-  return ((state.arm->prismatic_mask >> static_cast<std::uint32_t>(i)) & 1U) != 0U ? state.length_m : Real{1};
+inline Real joint_unit(const Goal& goal, std::int32_t i) {
+  return ((goal.arm->prismatic_mask >> static_cast<std::uint32_t>(i)) & 1U) != 0U ? goal.length_m : Real{1};
 }
 
 }  // namespace

@@ -16,7 +16,7 @@ struct Weakest {
 
 /// From the rows of `problem`, whose angles carry `rotation_weight`: four steps of inverse iteration on the triangle of
 /// J or of its transpose, whichever has fewer columns.
-[[gnu::noinline]] void find_weakest(const BoxProblem& problem, Task task, Real rotation_weight, Weakest& weakest) {
+[[gnu::noinline]] void find_weakest(BoxProblem& problem, Task task, Real rotation_weight, Weakest& weakest) {
   // Far below any singular value that matters, and far above what would overflow in two solutions.
   constexpr Real floor = sizeof(Real) == sizeof(double) ? Real(1e-11) : Real(1e-7);
   const std::int32_t rows = task_rank(task);
@@ -35,6 +35,7 @@ struct Weakest {
     for (std::int32_t k = 0; k < stack.equations; ++k) stack.column[i][k] = wide ? entry(i, k) : entry(k, i);
   }
   factor(stack, floor, nullptr, nullptr);
+  problem.budget -= 6;
   Real* x = wide ? weakest.u : weakest.v;
   Real* y = wide ? weakest.v : weakest.u;
   // Any start will do that is not orthogonal to what is sought; unlike entries make that unlikely.

@@ -26,6 +26,7 @@ BoxProblem random_problem(Random& random, int n, std::int32_t rows, std::int32_t
   if (n % 3 == 0 && rows > 1) {
     for (std::int32_t j = 0; j < columns; ++j) problem.row[1][j] = problem.row[0][j] + random.symmetric(1e-6);
   }
+  problem.budget = 1000;
   problem.damping = std::pow(10.0, -4.0 + 4.0 * std::fabs(random.symmetric(1)));
   for (std::int32_t j = 0; j < columns; ++j) {
     problem.pull[j] = n % 2 == 0 ? 0 : random.symmetric(0.1);
@@ -49,7 +50,7 @@ TEST(BoxLeastSquares, MeetsTheConditionsOfTheMinimum) {
   constexpr int problems = test::cases(20000);
   for (int n = 0; n < problems; ++n) {
     const auto rows = static_cast<std::int32_t>(1 + n % 7), columns = static_cast<std::int32_t>(1 + n / 7 % 8);
-    const BoxProblem problem = random_problem(random, n, rows, columns);
+    BoxProblem problem = random_problem(random, n, rows, columns);
     double x[max_joints];
     solve(problem, x);
     for (std::int32_t j = 0; j < columns; ++j) {
@@ -67,6 +68,40 @@ TEST(BoxLeastSquares, MeetsTheConditionsOfTheMinimum) {
     }
   }
   EXPECT_GT(at_bounds, problems);
+}
+
+double objective(const BoxProblem& problem, const double* x) {
+  double sum = 0;
+  for (std::int32_t i = 0; i < problem.rows; ++i) sum += residual(problem, i, x) * residual(problem, i, x);
+  for (std::int32_t j = 0; j < problem.columns; ++j) {
+    sum += problem.damping * problem.damping * (problem.pull[j] - x[j]) * (problem.pull[j] - x[j]);
+  }
+  return sum;
+}
+
+// Whatever it is cut off at: within the bounds, no worse than no step, and little more than the work that was left.
+TEST(BoxLeastSquares, IsUsableWithAnyBudget) {
+  Random random(43);
+  constexpr double nothing[max_joints] = {};
+  int cut = 0;
+  constexpr int problems = test::cases(20000);
+  for (int n = 0; n < problems; ++n) {
+    const auto rows = static_cast<std::int32_t>(1 + n % 7), columns = static_cast<std::int32_t>(1 + n / 7 % 8);
+    BoxProblem problem = random_problem(random, n, rows, columns);
+    problem.budget = n % 20 - 2;
+    const std::int32_t before = problem.budget;
+    double x[max_joints];
+    solve(problem, x);
+    if (problem.budget <= 0) ++cut;
+    EXPECT_GE(problem.budget, (before > 3 ? 3 : before) - 5) << n;
+    for (std::int32_t j = 0; j < problem.columns; ++j) {
+      ASSERT_GE(x[j], problem.low[j]);
+      ASSERT_LE(x[j], problem.high[j]);
+    }
+    const double start = objective(problem, nothing);
+    EXPECT_LE(objective(problem, x), start * (1 + 1e-12)) << n;
+  }
+  EXPECT_GT(cut, problems / 5);
 }
 
 TEST(BoxLeastSquares, WithRoomIsTheSolutionWithoutBounds) {

@@ -141,9 +141,9 @@ std::uint64_t golden_hash(int operations) {
 /// where a result does; if it is one of forward() or tick(), arithmetic_id (mdhcal/self_test.hpp) changes as well.
 inline constexpr int golden_operations = 100000;
 inline constexpr int golden_short = 1000;
-inline constexpr std::uint64_t golden_double = 0x7fc79273e8d86b3eULL;
-inline constexpr std::uint64_t golden_float = 0x9e362688f9855327ULL;
-inline constexpr std::uint64_t golden_double_short = 0x5c9345a7e2f18b38ULL;
-inline constexpr std::uint64_t golden_float_short = 0x842a3e664fafb640ULL;
+inline constexpr std::uint64_t golden_double = 0x1401f980f7bf71a7ULL;
+inline constexpr std::uint64_t golden_float = 0xc03ca341fbff99eaULL;
+inline constexpr std::uint64_t golden_double_short = 0x428b9453cbc4325fULL;
+inline constexpr std::uint64_t golden_float_short = 0xc0c93d4572253f4fULL;
 
 }  // namespace mdhcal::test

@@ -164,12 +164,18 @@ struct Excursion {
   double step = 0;                ///< largest |dq| of a tick
 };
 
+/// A tick to come.
+struct Due {
+  double q[6];
+  Pose<double> target;
+};
+
 /// Moves the target from the flange's pose at `start` straight away from the base to `far_m`, at constant orientation, by
 /// `advance_m` a tick, and back, and waits there until the arm has caught up. The continuation is unique if the arm meets
 /// no singularity but the border's: the smallest singular value stays above 0.03 on the way to 30 mm before the border,
-/// the second smallest above 0.06 throughout.
+/// the second smallest above 0.06 throughout. `unmet`, if given, receives the ticks that do not meet their pose.
 inline Excursion there_and_back(const Arm<double>& arm, const double* start, double far_m, double advance_m,
-                                double max_step) {
+                                double max_step, std::vector<Due>* unmet = nullptr) {
   TickOptions<double> options = servo_options(arm);
   std::fill(options.max_step, options.max_step + 6, max_step);
   Pose<double> home{};
@@ -201,6 +207,11 @@ inline Excursion there_and_back(const Arm<double>& arm, const double* start, dou
       ++found.unreachable;
       found.evaluations += report.iterations;
       found.most = std::max(found.most, report.iterations);
+      if (unmet != nullptr) {
+        unmet->push_back({});
+        std::copy(last, last + 6, unmet->back().q);
+        unmet->back().target = target;
+      }
     }
     if (n % 4 != 0) continue;
     double s[6];

@@ -21,8 +21,9 @@ struct TickOptions {
   Real max_step[max_joints];    ///< bound of |result - last joints|, each joint, for the whole tick; > 0 [rad] or [m]
   Real position_weight;         ///< weight of the position error over the reach where not all can be met; > 0 [1]
   Real rotation_weight;         ///< weight of the rotation error there; > 0 [1]
-  std::int32_t max_iterations;  ///< bound of evaluations of the arm in one tick, 1 ... max_tick_iterations; where the
-                                ///< pose cannot be met up to four more
+  std::int32_t max_iterations;  ///< bound of a tick's work, 1 ... max_tick_iterations: an iteration is an evaluation of
+                                ///< the arm and a factorization of its equations, all else counts in proportion; where
+                                ///< the pose cannot be met up to nine more
   Task task;
   Real posture[max_joints];     ///< where joints that the task leaves free should go [rad] or [m]
   Real posture_gain;            ///< part of the way to it in one tick, 0 (off) ... 1
@@ -42,7 +43,7 @@ struct TickReport {
   std::uint32_t limit_mask;     ///< bit i: joint i rests on a joint limit, or is outside it
 };
 
-/// Tolerances 1e-10 m and rad (float 5e-6), no step limit, position weighted 1000 times over rotation, 32 iterations,
+/// Tolerances 1e-10 m and rad (float 5e-6), no step limit, position weighted 1000 times over rotation, 14 iterations,
 /// the whole pose, no posture.
 TickOptions<double> default_tick_options(const Arm<double>& arm) noexcept;
 TickOptions<float> default_tick_options(const Arm<float>& arm) noexcept;
