@@ -159,6 +159,11 @@ inline bool passes_wrist(const Search& search, const Bend& bend) {
   if (s < near_singular_below && discriminant >= Real{0}) search_roots(search, bend, discriminant);
 }
 
+/// The caller's weight of the rotation over that of the position.
+inline Real callers_weight(const TickState& state) {
+  return state.options->rotation_weight / state.options->position_weight;
+}
+
 /// Starts over from the last joints. What the weakest singular direction does there decides how to go on. If it turns the
 /// flange, or hardly bends (a wrist's singularity), the singularity may be passed. Where the arm folds the singular value
 /// is kept from falling below a margin, so that the way back is the way that it came. The caller's weights hold but close
@@ -167,6 +172,7 @@ inline bool passes_wrist(const Search& search, const Bend& bend) {
 /// other for ever. Returns whether the singular value is to be kept.
 [[gnu::noinline]] bool start_over(Search& search, Bend& bend, Chance found) {
   constexpr Real margin = Real(0.005);
+  constexpr Real far = Real(0.01);
   const TickState& state = *search.state;
   if (!bend.of_last) {
     look_along(search, state.last, bend);
@@ -176,7 +182,7 @@ inline bool passes_wrist(const Search& search, const Bend& bend) {
   const Real s = bend.weakest.s;
   bend.least = s < margin ? s : margin;
   if (state.options->task == Task::pose) {
-    const Real callers = state.options->rotation_weight / state.options->position_weight;
+    const Real callers = callers_weight(state);
     const Real shift = state.error.position_m / state.length_m;
     const Real close = falling(s, Real(0.04), Real(0.06));
     const Real late = found == Chance::not_within_a_step ? falling(s, Real(0.1), Real(0.15)) *
@@ -186,23 +192,24 @@ inline bool passes_wrist(const Search& search, const Bend& bend) {
     share *= share;
     weigh_rotation(search, callers + share * share * (Real{1} - callers));
   }
-  // With hardly a singular value left there is no side to keep to.
-  return (bend.fold > Real(0.5) || (s >= Real(0.1) && search.rotation_weight >= weighted_below)) && s > Real(1e-6);
+  // A wrist that only has to come round is not held back; with hardly a singular value left there is no side to keep to.
+  const bool comes_round = search.rotation_weight < weighted_below && !(state.error.position_m > far * state.length_m);
+  return (bend.fold > Real(0.5) || (s >= Real(0.1) && !comes_round)) && s > Real(1e-6);
 }
 
 /// The error's square by the caller's weights.
 inline Real weighed(const TickState& state) {
   const Real position = state.error.position_m / state.length_m;
-  const Real rotation = state.error.rotation_rad * state.options->rotation_weight / state.options->position_weight;
+  const Real rotation = state.error.rotation_rad * callers_weight(state);
   return position * position + rotation * rotation;
 }
 
 /// Whether the search has gone far from the last joints [rad, or lengths of the arm] and lost by the caller's weights: the
-/// next tick would go it back.
-[[gnu::noinline]] bool gone_for_nothing(const Search& search, Real weighed_before) {
+/// next tick would go it back. Unless it halved the cost: where that is large, staying would be for ever.
+[[gnu::noinline]] bool gone_for_nothing(const Search& search, Real cost_before, Real weighed_before) {
   constexpr Real far = Real(0.05);
   const TickState& state = *search.state;
-  if (search.met || !(weighed(state) > weighed_before)) return false;
+  if (search.met || search.cost < half * cost_before || !(weighed(state) > weighed_before)) return false;
   for (std::int32_t j = 0; j < state.arm->joint_count; ++j) {
     if (magnitude(state.q[j] - state.last[j]) > far * joint_unit(state, j)) return true;
   }
@@ -215,6 +222,7 @@ inline Real weighed(const TickState& state) {
   TickState& state = *search.state;
   const bool keeps = start_over(search, bend, found);
   const Real weighed_before = weighed(state);
+  const Real cost_before = search.cost;
   const Real s_before = bend.weakest.s;
   const Real weight = search.rotation_weight;
   const bool weighted = weight < weighted_below;
@@ -223,7 +231,7 @@ inline Real weighed(const TickState& state) {
   const Real damping = weighted ? (keeps ? Real{2} * weight : weight) : care;
   if (search.problem.budget < one_step) search.problem.budget = one_step;
   minimise(search, {damping, &bend, keeps, false, little, creeping, found == Chance::none ? 2 : 4, 0});
-  if (gone_for_nothing(search, weighed_before)) {
+  if (gone_for_nothing(search, cost_before, weighed_before)) {
     start(search, state.last);
     bend.weakest.s = s_before;
   } else {

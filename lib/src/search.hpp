@@ -176,10 +176,6 @@ inline Real step_room(const TickState& state, std::int32_t j, bool up) {
     problem.damping = square_root(steepest - Real{4});
     raised = true;
   }
-  // A step that is hardly too long may as well be cut short as a whole.
-  constexpr Real almost = Real(1.2);
-  Real square_before = 0;
-  Real part_before = 0;
   for (int round = 0; round < 8 && problem.budget > 0; ++round) {
     solve_free(problem, step);
     Real worst = 0;
@@ -189,20 +185,8 @@ inline Real step_room(const TickState& state, std::int32_t j, bool up) {
     }
     if (!(worst > Real{1})) break;
     raised = true;
-    if (worst < almost) {
-      for (std::int32_t j = 0; j < problem.columns; ++j) step[j] /= worst;
-      break;
-    }
-    // What part of the step fits is about linear in the damping's square (Hebden 1973): at first as if through the
-    // origin, then through the last two rounds.
-    const Real part = Real{1} / worst;
-    const Real square = problem.damping * problem.damping;
-    Real more = square * (worst - Real{1});
-    if (round > 0 && part > part_before) more = (square - square_before) * (Real{1} - part) / (part - part_before);
-    const Real most = Real{10} * square * worst;
-    square_before = square;
-    part_before = part;
-    problem.damping = square_root(square + Real(1.2) * (more < most ? more : most));
+    const Real factor = Real(1.1) * square_root(worst);
+    problem.damping *= factor > Real(1.5) ? factor : Real(1.5);
   }
   return raised;
 }
@@ -238,6 +222,11 @@ inline bool rises(const TickState& state, const Bend& bend, const Real* q) {
   return change > Real{0};
 }
 
+/// Whether what is left of the error is in its turn.
+inline bool turns_only(const Real* b, std::int32_t rows) {
+  return rows == 6 && square(b, 3) < square(b + 3, 3);
+}
+
 /// Goes the step if that meets the pose, or brings some of what the linear model predicted of the cost, and adapts the
 /// damping and the patience; one towards the posture is gone whatever it costs. Where a singularity is passed the weakest
 /// direction rests while its singular value falls, and is caught up while that rises. Returns whether it went.
@@ -262,7 +251,7 @@ inline bool rises(const TickState& state, const Bend& bend, const Real* q) {
     if (!(ratio > Real(0.25))) {
       // A damping that does not go by the error may be far too small.
       search.scale *= aim.bend == nullptr || ratio > Real{-10} ? Real{10} : Real{1000};
-    } else if (ratio > Real(0.75) && !aim.keeps) {
+    } else if (ratio > Real(0.75) && !aim.keeps && (aim.bend == nullptr || turns_only(b, search.problem.rows))) {
       if (aim.bend == nullptr || rises(state, *aim.bend, q)) {
         search.scale *= Real(0.1);
       } else {

@@ -141,9 +141,9 @@ std::uint64_t golden_hash(int operations) {
 /// where a result does; if it is one of forward() or tick(), arithmetic_id (mdhcal/self_test.hpp) changes as well.
 inline constexpr int golden_operations = 100000;
 inline constexpr int golden_short = 1000;
-inline constexpr std::uint64_t golden_double = 0x1401f980f7bf71a7ULL;
-inline constexpr std::uint64_t golden_float = 0xc03ca341fbff99eaULL;
-inline constexpr std::uint64_t golden_double_short = 0x428b9453cbc4325fULL;
-inline constexpr std::uint64_t golden_float_short = 0xc0c93d4572253f4fULL;
+inline constexpr std::uint64_t golden_double = 0x4673b43faddf6c8eULL;
+inline constexpr std::uint64_t golden_float = 0x60292a6f2ac32993ULL;
+inline constexpr std::uint64_t golden_double_short = 0x6638fe629405d460ULL;
+inline constexpr std::uint64_t golden_float_short = 0xcae5562890770b78ULL;
 
 }  // namespace mdhcal::test
