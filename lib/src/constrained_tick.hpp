@@ -69,18 +69,22 @@ enum class Chance : std::int32_t {
   return length2 > Real{64} * room ? Chance::not_within_a_step : Chance::some;
 }
 
-/// Sets the masks: joints at a bound that the error pushes further.
-inline void find_pushing(const Search& search) {
-  TickState& state = *search.state;
-  state.step_mask = 0;
-  state.limit_mask = 0;
+/// Joints at a bound that the error pushes further.
+struct Pushing {
+  std::uint32_t step_mask, limit_mask;
+};
+
+inline Pushing find_pushing(const Search& search) {
+  const TickState& state = *search.state;
+  Pushing pushing{0, 0};
   for (std::int32_t j = 0; j < state.arm->joint_count; ++j) {
     const Real push = slope_of(search.problem, j);
     const bool up = push > Real{0};
     const Real room = up ? state.high[j] - state.q[j] : state.q[j] - state.low[j];
     if (!(magnitude(push) > Real{0}) || room > Real(1e-6) * (state.high[j] - state.low[j])) continue;
-    (limit_ends(state, j, up) ? state.limit_mask : state.step_mask) |= 1U << static_cast<std::uint32_t>(j);
+    (limit_ends(state, j, up) ? pushing.limit_mask : pushing.step_mask) |= 1U << static_cast<std::uint32_t>(j);
   }
+  return pushing;
 }
 
 inline Status classify(const Search& search) {
@@ -140,9 +144,8 @@ inline Real falling(Real x, Real low, Real high) {
 /// Whether the search rests on step limits on its way past a wrist's singularity, where hardly anything bends and there is
 /// no fold to leave.
 inline bool passes_wrist(const Search& search, const Bend& bend) {
-  find_pushing(search);
-  return bend.of_last && magnitude(bend.along) < Real(0.04) && search.state->step_mask != 0U &&
-         search.predicted > Real(0.9) * search.cost;
+  return bend.of_last && magnitude(bend.along) < Real(0.04) && search.predicted > Real(0.9) * search.cost &&
+         find_pushing(search).step_mask != 0U;
 }
 
 /// For a search that rests near a fold without meeting the pose, since there the error hardly has a slope: goes to where
@@ -275,7 +278,11 @@ inline Real weighed(const TickState& state) {
     make_the_best(search, bend, found);
   }
   state.smallest_singular_value = bend.weakest.s;
-  if (!search.met) find_pushing(search);
+  if (!search.met) {
+    const Pushing pushing = find_pushing(search);
+    state.step_mask = pushing.step_mask;
+    state.limit_mask = pushing.limit_mask;
+  }
   return classify(search);
 }
 

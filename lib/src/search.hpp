@@ -125,6 +125,14 @@ inline void set_room(Search& search) {
   }
 }
 
+/// `at_last` and what bend's singular value, taken as linear from the last joints, adds to it at q.
+inline Real linear_rise(const TickState& state, const Bend& bend, const Real* q, Real at_last) {
+  for (std::int32_t j = 0; j < state.arm->joint_count; ++j) {
+    at_last += bend.slope[j] * (q[j] - state.last[j]) / joint_unit(state, j);
+  }
+  return at_last;
+}
+
 /// Solves for a step, which is that of fit_damping() already if a singular value is kept and it has the room; where it
 /// takes that below its least, once more with the equation that it ends there.
 [[gnu::noinline]] void solve_kept(Search& search, const Bend* keep, Real* step) {
@@ -134,12 +142,9 @@ inline void set_room(Search& search) {
   if (keep == nullptr || !inside(problem, step)) solve(problem, step);
   if (keep == nullptr) return;
   const TickState& state = *search.state;
-  Real give = keep->weakest.s - keep->least;
+  const Real give = linear_rise(state, *keep, state.q, keep->weakest.s - keep->least);
   Real change = 0;
-  for (std::int32_t j = 0; j < problem.columns; ++j) {
-    give += keep->slope[j] * (state.q[j] - state.last[j]) / joint_unit(state, j);
-    change += keep->slope[j] * step[j];
-  }
+  for (std::int32_t j = 0; j < problem.columns; ++j) change += keep->slope[j] * step[j];
   if (give + change >= Real{0}) return;
   for (std::int32_t j = 0; j < problem.columns; ++j) problem.row[problem.rows][j] = weight * keep->slope[j];
   problem.b[problem.rows] = -weight * give;
@@ -213,15 +218,6 @@ inline Real within_bounds(const TickState& state, std::int32_t j, Real q) {
   return q < state.low[j] ? state.low[j] : (q > state.high[j] ? state.high[j] : q);
 }
 
-/// Whether the singular value of bend, taken as linear from the last joints, is larger at q.
-inline bool rises(const TickState& state, const Bend& bend, const Real* q) {
-  Real change = 0;
-  for (std::int32_t j = 0; j < state.arm->joint_count; ++j) {
-    change += bend.slope[j] * (q[j] - state.last[j]) / joint_unit(state, j);
-  }
-  return change > Real{0};
-}
-
 /// Whether what is left of the error is in its turn.
 inline bool turns_only(const Real* b, std::int32_t rows) {
   return rows == 6 && square(b, 3) < square(b + 3, 3);
@@ -252,7 +248,7 @@ inline bool turns_only(const Real* b, std::int32_t rows) {
       // A damping that does not go by the error may be far too small.
       search.scale *= aim.bend == nullptr || ratio > Real{-10} ? Real{10} : Real{1000};
     } else if (ratio > Real(0.75) && !aim.keeps && (aim.bend == nullptr || turns_only(b, search.problem.rows))) {
-      if (aim.bend == nullptr || rises(state, *aim.bend, q)) {
+      if (aim.bend == nullptr || linear_rise(state, *aim.bend, q, 0) > Real{0}) {
         search.scale *= Real(0.1);
       } else {
         search.patience -= 2;

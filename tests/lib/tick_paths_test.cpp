@@ -125,6 +125,34 @@ TEST(TickNearSingular, MeetsEveryPoseInFloat) {
   meets_near<float>(Near::elbow, 1.0, false, cases(2000), 57);
 }
 
+// Every joint a whole step from the pose's: searches rest on step limits on their way.
+TEST(TickNearSingular, NamesNoJointOnALimitWhereThePoseIsMet) {
+  Random random(58);
+  Arm<double> arm{};
+  int met = 0;
+  const int count = cases(6000);
+  for (int n = 0; n < count; ++n) {
+    if (n % 50 == 0) {
+      ASSERT_EQ(make_arm(with_errors(ur5(), random, 5e-3, 0.5 * deg), arm), Status::ok);
+    }
+    double q[6];
+    for (double& joint : q) joint = random.symmetric(pi);
+    if (n % 2 != 0) q[2] = random.symmetric(0.01);
+    if (n % 3 != 0) q[4] = random.symmetric(0.01);
+    Pose<double> target{};
+    ASSERT_EQ(forward(arm, q, target), Status::ok);
+    for (double& joint : q) joint += (random.symmetric(1) > 0 ? 1 : -1) * 0.99 * servo_step;
+    TickOptions<double> options = default_tick_options(arm);
+    options.position_tolerance_m = options.rotation_tolerance_rad = 1e-6;
+    std::fill(options.max_step, options.max_step + 6, servo_step);
+    TickReport<double> report{};
+    if (tick(arm, options, target, q, &report) != Status::ok) continue;
+    ++met;
+    ASSERT_EQ(report.step_mask | report.limit_mask, 0U) << n;
+  }
+  EXPECT_GT(met, count / 2);
+}
+
 // Joints exactly on a singularity, the target a step away, on it or off it: the pose is met, or the status is one that
 // forward() confirms.
 TEST(TickSingular, IsHonestFromExactlySingularSeeds) {
