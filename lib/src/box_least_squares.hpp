@@ -9,7 +9,7 @@
 namespace mdhcal {
 namespace {
 
-/// minimise |b - A x|^2 + damping^2 |pull - x|^2 over low <= x <= high, where low <= 0 <= high.
+/// minimise |b - A x|^2 + damping^2 |pull - x|^2
 struct BoxProblem {
   std::int32_t rows;      ///< of A, at most seven: six of a pose and one that holds a singular value
   std::int32_t columns;   ///< of A, at most max_joints
@@ -17,8 +17,12 @@ struct BoxProblem {
   Real b[7];
   Real damping;           ///< > 0
   Real pull[max_joints];
-  Real low[max_joints], high[max_joints];
   std::int32_t budget;    ///< what is left of the tick's work, in thirds of a factorization
+};
+
+/// over low <= x <= high, where low <= 0 <= high.
+struct Box {
+  Real low[max_joints], high[max_joints];
 };
 
 inline bool has(std::uint32_t mask, std::int32_t j) { return ((mask >> static_cast<std::uint32_t>(j)) & 1U) != 0U; }
@@ -175,15 +179,15 @@ inline void factor_free(BoxProblem& problem, std::uint32_t free_mask, const Real
 
 /// Goes from x towards z (the free unknowns' values) as far as the bounds let it. Returns the unknown that met a bound
 /// first and now rests on it, or -1.
-inline std::int32_t advance(const BoxProblem& problem, std::uint32_t free_mask, const Real* z, Real* x) {
+inline std::int32_t advance(const BoxProblem& problem, const Box& box, std::uint32_t free_mask, const Real* z, Real* x) {
   Real part = 1;
   std::int32_t hit = -1;
   std::int32_t k = 0;
   for (std::int32_t j = 0; j < problem.columns; ++j) {
     if (!has(free_mask, j)) continue;
     const Real to = z[k++];
-    if (!(to > problem.high[j]) && !(to < problem.low[j])) continue;
-    const Real room = to > x[j] ? problem.high[j] - x[j] : problem.low[j] - x[j];
+    if (!(to > box.high[j]) && !(to < box.low[j])) continue;
+    const Real room = to > x[j] ? box.high[j] - x[j] : box.low[j] - x[j];
     const Real ratio = room / (to - x[j]);
     if (hit < 0 || ratio < part) {
       part = ratio;
@@ -195,16 +199,16 @@ inline std::int32_t advance(const BoxProblem& problem, std::uint32_t free_mask, 
     if (!has(free_mask, j)) continue;
     const Real to = z[k++];
     const Real next = hit >= 0 ? x[j] + part * (to - x[j]) : to;
-    const bool up = j == hit ? to > x[j] : next > problem.high[j];
-    const bool down = j == hit ? !up : next < problem.low[j];
-    x[j] = up ? problem.high[j] : (down ? problem.low[j] : next);
+    const bool up = j == hit ? to > x[j] : next > box.high[j];
+    const bool down = j == hit ? !up : next < box.low[j];
+    x[j] = up ? box.high[j] : (down ? box.low[j] : next);
   }
   return hit;
 }
 
-inline bool inside(const BoxProblem& problem, const Real* x) {
+inline bool inside(const BoxProblem& problem, const Box& box, const Real* x) {
   for (std::int32_t j = 0; j < problem.columns; ++j) {
-    if (x[j] < problem.low[j] || x[j] > problem.high[j]) return false;
+    if (x[j] < box.low[j] || x[j] > box.high[j]) return false;
   }
   return true;
 }
@@ -219,11 +223,11 @@ inline std::int32_t place(std::uint32_t free_mask, std::int32_t j) {
 /// Solves the problem by an active set (Lawson, Hanson 1974, ch. 23; Stark, Parker 1995): each round either meets a
 /// bound, which then holds, or lets go of the one that the residual pulls away from the hardest. The objective falls in
 /// every round, so x is usable at the bound of rounds, or of the tick's work, too.
-[[maybe_unused, gnu::noinline]] void solve(BoxProblem& problem, Real* x) {
+[[maybe_unused, gnu::noinline]] void solve(BoxProblem& problem, const Box& box, Real* x) {
   std::uint32_t movable = 0;
   for (std::int32_t j = 0; j < problem.columns; ++j) {
     x[j] = 0;
-    if (problem.high[j] > problem.low[j]) movable |= 1U << static_cast<std::uint32_t>(j);
+    if (box.high[j] > box.low[j]) movable |= 1U << static_cast<std::uint32_t>(j);
   }
   std::uint32_t free_mask = movable;
   Stack stack;
@@ -232,7 +236,7 @@ inline std::int32_t place(std::uint32_t free_mask, std::int32_t j) {
   for (std::int32_t round = 0; round < 3 * problem.columns && problem.budget > 0; ++round) {
     Real z[max_joints];
     solve_upper(stack, right, z);
-    const std::int32_t hit = advance(problem, free_mask, z, x);
+    const std::int32_t hit = advance(problem, box, free_mask, z, x);
     if (hit >= 0) {
       hold(stack, right, place(free_mask, hit), x[hit]);
       --problem.budget;
@@ -252,7 +256,7 @@ inline std::int32_t place(std::uint32_t free_mask, std::int32_t j) {
     std::int32_t release = -1;
     for (std::int32_t j = 0; j < problem.columns; ++j) {
       if (!has(movable & ~free_mask, j)) continue;
-      const Real inward = x[j] < problem.high[j] ? slope[j] : -slope[j];
+      const Real inward = x[j] < box.high[j] ? slope[j] : -slope[j];
       if (inward > hardest) {
         hardest = inward;
         release = j;

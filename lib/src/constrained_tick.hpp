@@ -3,6 +3,7 @@
 // minimisations (search.hpp) it takes, and what is claimed of their result.
 #pragma once
 
+#include "regular_tick.hpp"
 #include "search.hpp"
 
 namespace mdhcal {
@@ -11,17 +12,21 @@ namespace {
 /// The damping of the first step over the root of the error.
 constexpr Real care = Real(0.1);
 constexpr Real near_singular_below = Real(0.01);
-/// Further off than this a second-order model is of no use [rad, or lengths of the arm].
-constexpr Real furthest_leap = Real(0.05);
+/// Nearer to a singularity than this, it is looked at before the pose is tried.
+constexpr Real looked_at_below = Real(0.05);
 /// The part of the error's square that the linear model has to promise away: half where a pose is to be met, little where
 /// the best is to be made of it.
 constexpr Real half = Real(0.5);
 constexpr Real little = Real(1e-5);
-/// The work that one of TickOptions::max_iterations stands for, an evaluation and a factorization, in thirds of the
-/// latter.
-constexpr std::int32_t per_iteration = evaluation + 3;
-/// Enough for an iteration with several factorizations.
-constexpr std::int32_t one_step = 20;
+/// A search that begins with more than this of the error's square, a tenth of the arm's length or of a radian, and ends with
+/// so little of it has come far even where the pose is not met.
+constexpr Real far_off = Real(0.01);
+constexpr Real most_gone = Real(0.05);
+/// The error's square at a hundred-thousandth of the arm's length or of a radian.
+constexpr Real nearly_met = Real(1e-10);
+/// The work that is kept for the best of a pose that is not met: a start, an iteration, and what is claimed of the result;
+/// what the weakest direction does at the last joints comes before it or is in it.
+constexpr std::int32_t best_work = evaluation + kept_iteration + weakest_alone;
 
 /// Whether the target is further from the base than the arm is long. Slides may be of any length.
 inline bool beyond_reach(const TickState& state) {
@@ -48,8 +53,9 @@ enum class Chance : std::int32_t {
 [[gnu::noinline]] Chance chance(Search& search, const Bend& bend) {
   const TickState& state = *search.state;
   if (beyond_reach(state)) return Chance::none;
-  Real step[max_joints];
+  Real* step = search.ahead;
   solve_free(search.problem, step);
+  search.solved = true;
   Real room = 0;
   Real along = 0;
   for (std::int32_t j = 0; j < search.problem.columns; ++j) {
@@ -57,11 +63,11 @@ enum class Chance : std::int32_t {
     const Real up = (state.high[j] - state.q[j]) / joint_unit(state, j);
     const Real wider = down > up ? down : up;
     room += wider * wider;
-    if (bend.of_last) along += bend.weakest.v[j] * step[j];
+    if (bend.of_last) along += search.weakest.v[j] * step[j];
   }
   const Real length2 = square(step, search.problem.columns);
   if (bend.of_last && magnitude(bend.along) >= Real(0.05)) {
-    const Real s = bend.weakest.s;
+    const Real s = bend.s;
     constexpr Real rounding = sizeof(Real) == sizeof(double) ? Real(1e-15) : Real(5e-7);
     const Real slack = Real{16} * (length2 - along * along) + rounding * square_root(search.cost) / s;
     if (s * s + Real{2} * (bend.along * bend.wanted + magnitude(bend.along) * slack) < Real{0}) return Chance::none;
@@ -101,65 +107,102 @@ inline Real falling(Real x, Real low, Real high) {
   return x < low ? Real{1} : (x > high ? Real{0} : (high - x) / (high - low));
 }
 
-/// Puts the search at q, all errors alike, and finds what the weakest direction does there.
-[[gnu::noinline]] void look_along(Search& search, const Real* q, Bend& bend) {
+/// Finds what the weakest direction does at the search's joints, errors alike, which `look` is of.
+[[gnu::noinline]] void find_bend(Search& search, const Look& look, Bend& bend) {
   TickState& state = *search.state;
-  Look look;
-  look_at(search, q, look);
-  search.rotation_weight = 1;
-  settle(search, q, look);
   bend.of_last = search.there;
-  find_weakest(search.problem, state.options->task, Real{1}, bend.weakest);
-  search.problem.budget -= 3;
-  slope_of_weakest(state, look.frame, look.coordinates, bend.weakest, bend.slope);
+  Weakest& weakest = search.weakest;
+  find_weakest(search.problem, state.options->task, Real{1}, weakest);
+  slope_of_weakest(state, look.frame, look.coordinates, weakest, bend.slope);
+  bend.s = weakest.s;
+  search.problem.budget -= weakest_and_slope;
   bend.along = 0;
-  for (std::int32_t j = 0; j < search.problem.columns; ++j) bend.along += bend.slope[j] * bend.weakest.v[j];
+  for (std::int32_t j = 0; j < search.problem.columns; ++j) bend.along += bend.slope[j] * weakest.v[j];
   bend.wanted = 0;
-  for (std::int32_t i = 0; i < search.problem.rows; ++i) bend.wanted += bend.weakest.u[i] * search.problem.b[i];
-  const Real* turn = bend.weakest.u + 3;
+  for (std::int32_t i = 0; i < search.problem.rows; ++i) bend.wanted += weakest.u[i] * search.problem.b[i];
+  const Real* turn = weakest.u + 3;
   bend.fold = state.options->task == Task::pose
                   ? falling(square_root(dot(turn, turn)), Real(0.15), Real(0.25)) *
                         (Real{1} - falling(magnitude(bend.along), Real(0.04), Real(0.06)))
                   : Real{1};
 }
 
-/// Searches from where s t + along t^2 / 2 = wanted puts the joints along the weakest direction: from the nearer root,
-/// then from the other.
-[[gnu::noinline]] void search_roots(Search& search, const Bend& bend, Real discriminant) {
-  TickState& state = *search.state;
-  Real rest[max_joints];
-  for (std::int32_t j = 0; j < search.problem.columns; ++j) rest[j] = state.q[j];
-  const Real sum = bend.weakest.s + square_root(discriminant);
-  for (int root = 0; root < 2 && !search.met && search.problem.budget > 0; ++root) {
-    const Real leap = root == 0 ? Real{2} * bend.wanted / sum : -sum / bend.along;
-    if (!(magnitude(leap) < furthest_leap)) return;
-    for (std::int32_t j = 0; j < search.problem.columns; ++j) {
-      state.q[j] = within_bounds(state, j, rest[j] + leap * bend.weakest.v[j] * joint_unit(state, j));
-    }
-    start(search, state.q);
-    minimise(search, {care, nullptr, false, false, half, half, max_tick_iterations, 0});
+/// Starts at q and finds what the weakest direction does there.
+[[gnu::noinline]] void start_along(Search& search, const Real* q, Bend& bend) {
+  search.rotation_weight = 1;
+  Look look;
+  look_at(search, q, look, search.state->error);
+  settle(search, q, look);
+  find_bend(search, look, bend);
+}
+
+/// Goes `leap` along the weakest direction from the search's joints. Returns whether that is a short way and the bounds leave
+/// nearly all of it.
+inline bool leap_to(const Search& search, Real leap, Real* q) {
+  const TickState& state = *search.state;
+  if (!(magnitude(leap) < furthest_leap)) return false;
+  bool there = true;
+  for (std::int32_t j = 0; j < search.problem.columns; ++j) {
+    const Real way = leap * search.weakest.v[j] * joint_unit(state, j);
+    const Real from = state.q[j];
+    q[j] = within_bounds(state, j, from + way);
+    if (magnitude(q[j] - from) < Real(0.9) * magnitude(way)) there = false;
   }
+  return there;
 }
 
-/// Whether the search rests on step limits on its way past a wrist's singularity, where hardly anything bends and there is
-/// no fold to leave.
-inline bool passes_wrist(const Search& search, const Bend& bend) {
-  return bend.of_last && magnitude(bend.along) < Real(0.04) && search.predicted > Real(0.9) * search.cost &&
-         find_pushing(search).step_mask != 0U;
-}
-
-/// For a search that rests near a fold without meeting the pose, since there the error hardly has a slope: goes to where
-/// the second-order model of what the weakest direction answers meets the pose.
-[[gnu::noinline]] void leave_fold(Search& search, Bend& bend) {
-  constexpr Real nearby = furthest_leap * furthest_leap;
-  if (search.cost > nearby * nearby || search.problem.budget <= 0 || passes_wrist(search, bend)) return;
-  look_along(search, search.state->q, bend);
-  const Real s = bend.weakest.s;
+/// Where s t + along t^2 / 2 = wanted puts the joints along the weakest direction at the search's joints, which are near a
+/// fold: goes to the nearer root that is within the bounds; ahead are the joints at the other one. Returns how many there are.
+[[gnu::noinline]] int go_to_root(Search& search) {
+  TickState& state = *search.state;
+  Bend bend;
+  start_along(search, state.q, bend);
+  const Real s = bend.s;
   Real discriminant = s * s + Real{2} * bend.along * bend.wanted;
   // A pose on the fold is short of it by rounding; within the tolerances that is no matter.
-  const Real short_by = Real{2} * magnitude(bend.along) * search.state->options->rotation_tolerance_rad;
+  const Real short_by = Real{2} * magnitude(bend.along) * state.options->rotation_tolerance_rad;
   if (discriminant < Real{0} && discriminant > -short_by) discriminant = 0;
-  if (s < near_singular_below && discriminant >= Real{0}) search_roots(search, bend, discriminant);
+  if (!(s < near_singular_below) || discriminant < Real{0}) return 0;
+  const Real sum = s + square_root(discriminant);
+  const bool further = leap_to(search, -sum / bend.along, search.ahead);
+  if (leap_to(search, Real{2} * bend.wanted / sum, state.q)) return further ? 2 : 1;
+  if (!further) return 0;
+  for (std::int32_t j = 0; j < search.problem.columns; ++j) state.q[j] = search.ahead[j];
+  return 1;
+}
+
+/// Whether the weakest direction bends as it does at a fold, and at hardly any wrist.
+inline bool bends(const Bend& bend) { return !(magnitude(bend.along) < Real(0.04)); }
+
+/// Whether step limits are what holds up the search on its way past a wrist's singularity, where hardly anything bends and
+/// there is no fold to leave.
+inline bool passes_wrist(const Search& search, const Bend& bend) { return search.held && bend.of_last && !bends(bend); }
+
+/// Whether the singular value at the search's joints is surely not that near a fold, going by the last joints: linear there,
+/// with a curvature of no more than 1 [/rad^2], or falling by no more than the way.
+inline bool far_from_fold(const Search& search, const Bend& bend) {
+  const TickState& state = *search.state;
+  Real way = 0;
+  for (std::int32_t j = 0; j < state.arm->joint_count; ++j) {
+    way += magnitude(state.q[j] - state.last[j]) / joint_unit(state, j);
+  }
+  const Real least = bend.of_last ? linear_rise(state, bend, state.q, bend.s) - way * way : looked_at_below - way;
+  return least > Real{2} * near_singular_below;
+}
+
+/// For a search that rests near a fold without meeting the pose, since there the error hardly has a slope: goes on from where
+/// the second-order model of what the weakest direction answers meets the pose. `bend` is of the last joints.
+[[gnu::noinline]] void leave_fold(Search& search, const Bend& bend) {
+  constexpr std::int32_t work = evaluation + weakest_and_slope + evaluation;
+  if (search.cost > foldable || search.problem.budget < work) return;
+  if (far_from_fold(search, bend) || passes_wrist(search, bend)) return;
+  const int roots = go_to_root(search);
+  for (int root = 0; root < roots && !search.met; ++root) {
+    if (search.problem.budget < evaluation) return;
+    search.folded = root + 1 < roots;
+    start(search, root == 0 ? search.state->q : search.ahead);
+    minimise(search, {care, nullptr, false, false, half, half, max_tick_iterations});
+  }
 }
 
 /// The caller's weight of the rotation over that of the position.
@@ -174,16 +217,14 @@ inline Real callers_weight(const TickState& state) {
 /// errors are alike. Between the two the weight goes over without a jump, or ticks on either side of one would undo each
 /// other for ever. Returns whether the singular value is to be kept.
 [[gnu::noinline]] bool start_over(Search& search, Bend& bend, Chance found) {
-  constexpr Real margin = Real(0.005);
   constexpr Real far = Real(0.01);
   const TickState& state = *search.state;
   if (!bend.of_last) {
-    look_along(search, state.last, bend);
+    start_along(search, state.last, bend);
   } else if (!search.there) {
     start(search, state.last);
   }
-  const Real s = bend.weakest.s;
-  bend.least = s < margin ? s : margin;
+  const Real s = bend.s;
   if (state.options->task == Task::pose) {
     const Real callers = callers_weight(state);
     const Real shift = state.error.position_m / state.length_m;
@@ -220,64 +261,87 @@ inline Real weighed(const TickState& state) {
 }
 
 /// The best that can be had of a pose that is not met, in four iterations (two where it has no chance at all) and what is
-/// left of the work, but at least one. In the end bend is of the result.
+/// left of the work, but at least one. In the end the weakest direction is the
+/// result's.
 [[gnu::noinline]] void make_the_best(Search& search, Bend& bend, Chance found) {
   TickState& state = *search.state;
   const bool keeps = start_over(search, bend, found);
+  search.solved = false;
+  // Set aside for the end; of the rest one iteration at least.
+  search.problem.budget -= weakest_alone;
+  if (search.problem.budget < kept_iteration) search.problem.budget = kept_iteration;
   const Real weighed_before = weighed(state);
   const Real cost_before = search.cost;
-  const Real s_before = bend.weakest.s;
   const Real weight = search.rotation_weight;
   const bool weighted = weight < weighted_below;
   // A wrist comes round only slowly.
   const Real creeping = weighted ? Real(0.003) : Real(0.02);
   const Real damping = weighted ? (keeps ? Real{2} * weight : weight) : care;
-  if (search.problem.budget < one_step) search.problem.budget = one_step;
-  minimise(search, {damping, &bend, keeps, false, little, creeping, found == Chance::none ? 2 : 4, 0});
+  minimise(search, {damping, &bend, keeps, false, little, creeping, found == Chance::none ? 2 : 4});
   if (gone_for_nothing(search, cost_before, weighed_before)) {
     start(search, state.last);
-    bend.weakest.s = s_before;
+    search.weakest.s = bend.s;
   } else {
-    find_weakest(search.problem, state.options->task, weight, bend.weakest);
+    find_weakest(search.problem, state.options->task, weight, search.weakest);
   }
 }
 
-/// The tick where limits, singularities or free joints matter. First the pose is tried with all errors alike; if that
-/// fails, the best is made of it. Returns the tick's status but for joints outside a limit.
-[[gnu::noinline]] Status constrained_tick(TickState& state) {
-  // Nearer to a singularity than this, it is looked at before the pose is tried.
-  constexpr Real near = Real(0.05);
-  const std::int32_t all_work = per_iteration * state.options->max_iterations;
+/// The regular tick, where there is one; if it fails, puts the search at the last joints, by what that saw of them. Returns
+/// whether the pose is met.
+[[gnu::noinline]] bool begin(Search& search, Bend& bend) {
+  TickState& state = *search.state;
+  Look look;
+  if (state.arm->joint_count == 6 && state.options->task == Task::pose && regular_tick(state, look)) return true;
+  // What is seen first is the last joints.
+  search.problem.budget -= evaluation * state.evaluations;
+  if (state.evaluations != 1) look_at(search, state.last, look, state.error);
+  settle(search, state.last, look);
+  bend.of_last = false;
+  if (state.smallest_singular_value < looked_at_below) find_bend(search, look, bend);
+  return false;
+}
+
+/// The tick: the regular one, or if that fails the pose is tried with all errors alike; if that fails, the best is made of
+/// it. Returns the status but for joints outside a limit.
+[[gnu::noinline]] Status any_tick(TickState& state) {
   Search search;
   Bend bend;
   search.state = &state;
   search.problem.rows = task_rank(state.options->task);
   search.problem.columns = state.arm->joint_count;
-  search.problem.budget = all_work - evaluation * state.evaluations;
+  search.problem.budget = per_iteration * state.options->max_iterations;
+  search.rotation_weight = 1;
   search.predicted = 0;
   search.met = false;
-  bend.of_last = false;
+  search.solved = false;
+  if (begin(search, bend)) return Status::ok;
+  search.folded = bend.of_last && bends(bend);
   const bool posture = state.options->posture_gain > Real{0} && search.problem.columns > search.problem.rows;
-  if (state.smallest_singular_value < near) {
-    look_along(search, state.last, bend);
-  } else {
-    start(search, state.last);
-  }
   search.problem.damping = step_damping(search, care);
   set_pull(search, false);
   const Chance found = posture ? Chance::some : chance(search, bend);
+  bool came_far = false;
   if (found == Chance::some) {
-    // Half of the work is left for what comes after it, unless it goes well.
-    minimise(search, {care, nullptr, false, posture, half, half, max_tick_iterations, all_work / 2});
-    if (!search.met) leave_fold(search, bend);
+    const Real cost_before = search.cost;
+    // Where only the posture is left to go to, nothing better can be made of the last joints.
+    const std::int32_t reserve =
+        met(state, state.error) ? 0 : best_work + (bend.of_last ? 0 : weakest_and_slope);
+    search.problem.budget -= reserve;
+    minimise(search, {care, nullptr, false, posture, half, half, max_tick_iterations});
+    came_far = !search.met && cost_before > far_off && search.cost < most_gone * cost_before;
+    // So close to it the pose is worth all that is left.
+    const bool nearly = search.cost < nearly_met;
+    if (nearly) search.problem.budget += reserve;
+    if (!search.met && !came_far) leave_fold(search, bend);
+    if (!nearly) search.problem.budget += reserve;
   }
-  if (search.met) {
-    find_weakest(search.problem, state.options->task, Real{1}, bend.weakest);
+  if (search.met || came_far) {
+    find_weakest(search.problem, state.options->task, Real{1}, search.weakest);
   } else {
     // What cannot be had is not worth more.
     make_the_best(search, bend, found);
   }
-  state.smallest_singular_value = bend.weakest.s;
+  state.smallest_singular_value = search.weakest.s;
   if (!search.met) {
     const Pushing pushing = find_pushing(search);
     state.step_mask = pushing.step_mask;

@@ -4,7 +4,6 @@
 #include "real.hpp"
 // The tick's parts see Real.
 #include "constrained_tick.hpp"
-#include "regular_tick.hpp"
 #include "tick_valid.hpp"
 
 namespace mdhcal {
@@ -85,7 +84,7 @@ TickOptions<Real> default_tick_options(const Arm<Real>& arm) noexcept {
   for (std::int32_t j = 0; j < arm.joint_count; ++j) options.max_step[j] = largest;
   options.position_weight = 1;
   options.rotation_weight = Real(0.001);
-  options.max_iterations = 14;
+  options.max_iterations = 11;
   options.task = Task::pose;
   return options;
 }
@@ -106,10 +105,8 @@ Status tick(const Arm<Real>& arm, const TickOptions<Real>& options, const Pose<R
   state.evaluations = 0;
   state.step_mask = 0;
   state.limit_mask = 0;
-  Status status = Status::ok;
   state.smallest_singular_value = 1;  // until something is known of it
-  const bool regular = arm.joint_count == 6 && options.task == Task::pose;
-  if (!regular || !regular_tick(state)) status = constrained_tick(state);
+  Status status = any_tick(state);
   for (std::int32_t j = 0; j < arm.joint_count; ++j) q[j] = state.q[j];
   const std::uint32_t outside = outside_limits(arm, q);
   if (outside != 0U) status = Status::joint_limited;

@@ -12,8 +12,10 @@ namespace {
 struct Factors {
   Real column[6][6];
   Real diagonal[6];   ///< of R
-  Real scale[6];      ///< 2 / |v|^2 of each Householder vector
 };
+
+/// 2 / |v|^2 of Householder vector k, since |v|^2 / 2 = -norm v_k.
+inline Real reflection_scale(const Factors& f, int k) { return Real{-1} / (f.diagonal[k] * f.column[k][k]); }
 
 /// Factors the matrix in place. Returns false if it is singular.
 inline bool factor(Factors& f) {
@@ -24,14 +26,13 @@ inline bool factor(Factors& f) {
     if (!(square > Real{0})) return false;
     const Real norm = v[k] > Real{0} ? -square_root(square) : square_root(square);
     f.diagonal[k] = norm;
-    // |v - norm e_k|^2 / 2 = norm (norm - v_k)
-    f.scale[k] = Real{1} / (norm * (norm - v[k]));
     v[k] -= norm;
+    const Real scale = reflection_scale(f, k);
     for (int j = k + 1; j < 6; ++j) {
       Real* c = f.column[j];
       Real sum = 0;
       for (int i = k; i < 6; ++i) sum += v[i] * c[i];
-      sum *= f.scale[k];
+      sum *= scale;
       for (int i = k; i < 6; ++i) c[i] -= sum * v[i];
     }
   }
@@ -62,7 +63,7 @@ inline void solve(const Factors& f, Real* b, Real* x) {
     const Real* v = f.column[k];
     Real sum = 0;
     for (int i = k; i < 6; ++i) sum += v[i] * b[i];
-    sum *= f.scale[k];
+    sum *= reflection_scale(f, k);
     for (int i = k; i < 6; ++i) b[i] -= sum * v[i];
   }
   for (int i = 5; i >= 0; --i) {

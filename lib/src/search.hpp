@@ -8,13 +8,23 @@
 namespace mdhcal {
 namespace {
 
+/// Further off than this a second-order model is of no use [rad, or lengths of the arm].
+constexpr Real furthest_leap = Real(0.05);
 /// The longest step between two evaluations [rad, or lengths of the arm].
 constexpr Real longest_step = Real(0.3);
 /// What keeps the equations of a step regular; a direction with a smaller singular value is left alone.
 constexpr Real least_damping = sizeof(Real) == sizeof(double) ? Real(1e-8) : Real(1e-4);
 
-/// The work of an evaluation of the arm with what follows from it, in thirds of a factorization.
+/// Work is counted in thirds of a factorization: an evaluation of the arm with what follows from it; an iteration, which is
+/// one of each, or with a singular value kept two factorizations; the weakest direction; how that changes as well.
 constexpr std::int32_t evaluation = 5;
+constexpr std::int32_t per_iteration = evaluation + 3;
+constexpr std::int32_t kept_iteration = per_iteration + 3;
+constexpr std::int32_t weakest_alone = 6;
+constexpr std::int32_t weakest_and_slope = weakest_alone + 3;
+/// The error's square below which a second-order model of the weakest direction may take over: an error of the square of
+/// the way that it is good for.
+constexpr Real foldable = (furthest_leap * furthest_leap) * (furthest_leap * furthest_leap);
 /// What a minimisation may lose at first: iterations that fail or gain little.
 constexpr std::int32_t all_patience = 2;
 
@@ -26,48 +36,44 @@ struct Search {
   Real cost;             ///< |weighted error|^2 at the joints
   Real scale;            ///< of the damping
   Real predicted;        ///< what the last step's linear model was to leave of the cost
+  Real ahead[max_joints]; ///< found before it is used: the first step without its bounds; then joints at another root
+  Weakest weakest;       ///< the newest
   std::int32_t patience;
   bool met;
   bool there;            ///< at the last joints
+  bool folded;           ///< if the linear model fails close to the pose, the second-order one has another way
+  bool solved;           ///< the first step is ahead
+  bool held;             ///< ended where the linear model promises nothing because a step limit holds it back
   bool cut;              ///< ended by the bound of the tick's work
 };
 
-/// What one evaluation of the arm shows. Large, hence on the stack only of what uses it.
-struct Look {
-  Frame<Real> frame;
-  Jacobian<Real> coordinates;   ///< by joint coordinate
-  PoseError error;
-};
-
-/// The weakest singular direction at some joints and what it does.
+/// What the weakest singular direction does at some joints.
 struct Bend {
-  Weakest weakest;
+  Real s;                   ///< the singular value
   Real slope[max_joints];   ///< of the singular value, by the unit-free readings
   Real along;               ///< the slope along the direction
   Real wanted;              ///< the error's component that the direction answers
   Real fold;                ///< 1 on a straight elbow: the direction shifts the flange and bends; 0 on a wrist; else between
   bool of_last;             ///< at the last joints
-  Real least;               ///< a minimisation with it may not take the singular value below this
 };
 
 /// How a minimisation goes about it: to meet the pose, or to make the best of it by what the weakest direction does.
 struct Aim {
   Real damping;           ///< of a step, the weight of the joints' motion; times the error's root if the pose is to be met
   const Bend* bend;       ///< what to make the best by; null if the pose is to be met
-  bool keeps;             ///< the singular value from falling below bend's least
+  bool keeps;             ///< the singular value from falling too low
   bool posture;           ///< the first step goes to the posture as well
   Real promise;           ///< the least part of the cost that the linear model has to take away for a step to be tried
   Real creeping;          ///< likewise, after the first step: what comes more slowly can wait for the next tick
   std::int32_t most;      ///< iterations
-  std::int32_t reserve;   ///< what is to be left of the work, once it does not go well
 };
 
-inline void look_at(Search& search, const Real* q, Look& look) {
+inline void look_at(Search& search, const Real* q, Look& look, PoseError& error) {
   TickState& state = *search.state;
   evaluate(*state.arm, q, look.frame, look.coordinates);
   ++state.evaluations;
   search.problem.budget -= evaluation;
-  pose_error(state.target, look.frame, state.options->task, look.error);
+  pose_error(state.target, look.frame, state.options->task, error);
 }
 
 inline Real square(const Real* b, std::int32_t count) {
@@ -76,14 +82,13 @@ inline Real square(const Real* b, std::int32_t count) {
   return sum;
 }
 
-/// Makes q the search's joints: state.last itself where it goes back to these.
+/// Makes q, where the error is the state's, the search's joints: state.last itself where it goes back to these.
 inline void settle(Search& search, const Real* q, const Look& look) {
   TickState& state = *search.state;
   BoxProblem& problem = search.problem;
   search.there = q == state.last;
   for (std::int32_t j = 0; j < state.arm->joint_count; ++j) state.q[j] = q[j];
-  state.error = look.error;
-  to_task(state, look.frame, search.rotation_weight, look.error.vector, problem.b);
+  to_task(state, look.frame, search.rotation_weight, state.error.vector, problem.b);
   search.cost = square(problem.b, problem.rows);
   linearise(state, look.frame, look.coordinates, search.rotation_weight, problem);
 }
@@ -103,7 +108,7 @@ inline void weigh_rotation(Search& search, Real weight) {
 [[gnu::noinline]] void start(Search& search, const Real* q) {
   search.rotation_weight = 1;
   Look look;
-  look_at(search, q, look);
+  look_at(search, q, look, search.state->error);
   settle(search, q, look);
 }
 
@@ -115,13 +120,13 @@ inline bool limit_ends(const TickState& state, std::int32_t j, bool up) {
 }
 
 /// The room for a step around the search's joints.
-inline void set_room(Search& search) {
+inline void set_room(const Search& search, Box& room) {
   const TickState& state = *search.state;
   for (std::int32_t j = 0; j < state.arm->joint_count; ++j) {
     const Real down = (state.q[j] - state.low[j]) / joint_unit(state, j);
     const Real up = (state.high[j] - state.q[j]) / joint_unit(state, j);
-    search.problem.low[j] = down > longest_step ? -longest_step : -down;
-    search.problem.high[j] = up > longest_step ? longest_step : up;
+    room.low[j] = down > longest_step ? -longest_step : -down;
+    room.high[j] = up > longest_step ? longest_step : up;
   }
 }
 
@@ -133,23 +138,29 @@ inline Real linear_rise(const TickState& state, const Bend& bend, const Real* q,
   return at_last;
 }
 
-/// Solves for a step, which is that of fit_damping() already if a singular value is kept and it has the room; where it
-/// takes that below its least, once more with the equation that it ends there.
-[[gnu::noinline]] void solve_kept(Search& search, const Bend* keep, Real* step) {
+/// What a minimisation may not take the singular value below.
+inline Real least_of(const Bend& bend) {
+  constexpr Real margin = Real(0.005);
+  return bend.s < margin ? bend.s : margin;
+}
+
+/// Solves for the step, which is that without bounds already if `solved`; where it takes the singular value that is to be
+/// kept too low, once more with the equation that it ends there.
+[[gnu::noinline]] void solve_kept(Search& search, const Box& room, const Bend* keep, bool solved, Real* step) {
   // Against rows of one and less: the equation is met to a thousandth.
   constexpr Real weight = 30;
   BoxProblem& problem = search.problem;
-  if (keep == nullptr || !inside(problem, step)) solve(problem, step);
+  if (!solved || !inside(problem, room, step)) solve(problem, room, step);
   if (keep == nullptr) return;
   const TickState& state = *search.state;
-  const Real give = linear_rise(state, *keep, state.q, keep->weakest.s - keep->least);
+  const Real give = linear_rise(state, *keep, state.q, keep->s - least_of(*keep));
   Real change = 0;
   for (std::int32_t j = 0; j < problem.columns; ++j) change += keep->slope[j] * step[j];
   if (give + change >= Real{0}) return;
   for (std::int32_t j = 0; j < problem.columns; ++j) problem.row[problem.rows][j] = weight * keep->slope[j];
   problem.b[problem.rows] = -weight * give;
   ++problem.rows;
-  solve(problem, step);
+  solve(problem, room, step);
   --problem.rows;
 }
 
@@ -163,8 +174,8 @@ inline Real step_room(const TickState& state, std::int32_t j, bool up) {
 }
 
 /// Raises the damping, to little more than the least, until the step fits between the step limits: unlike one that is cut
-/// off at them, it keeps to the directions that the joints are good at. `step`: the last that was tried. Returns whether it
-/// had to.
+/// off at them, it keeps to the directions that the joints are good at. `step` receives it, free of bounds. Returns whether
+/// it had to.
 [[gnu::noinline]] bool fit_damping(Search& search, Real* step) {
   const TickState& state = *search.state;
   BoxProblem& problem = search.problem;
@@ -233,17 +244,23 @@ inline bool turns_only(const Real* b, std::int32_t rows) {
     q[j] = within_bounds(state, j, state.q[j] + step[j] * joint_unit(state, j));
   }
   Look look;
-  look_at(search, q, look);
-  search.met = met(state, look.error);
+  PoseError error;
+  look_at(search, q, look, error);
+  search.met = met(state, error);
   Real b[6];
-  to_task(state, look.frame, search.rotation_weight, look.error.vector, b);
+  to_task(state, look.frame, search.rotation_weight, error.vector, b);
   const Real cost = square(b, search.problem.rows);
   const Real ratio = (search.cost - cost) / (search.cost - search.predicted);
   const bool goes = search.met || posture || ratio > Real(0.001);
   // A step that does as predicted has to halve the cost to count as a gain, one that does not to quarter it.
   const Real enough = ratio > Real(0.75) ? Real(0.5) : Real(0.25);
   if (!posture) {
-    if (!goes || !(cost < enough * search.cost)) --search.patience;
+    if (!goes && aim.bend == nullptr && search.cost < foldable && search.patience == all_patience) {
+      // Close to the pose a model that fails at once is bent.
+      search.patience = search.folded ? -1 : 0;
+    } else if (!goes || !(cost < enough * search.cost)) {
+      --search.patience;
+    }
     if (!(ratio > Real(0.25))) {
       // A damping that does not go by the error may be far too small.
       search.scale *= aim.bend == nullptr || ratio > Real{-10} ? Real{10} : Real{1000};
@@ -255,8 +272,21 @@ inline bool turns_only(const Real* b, std::int32_t rows) {
       }
     }
   }
-  if (goes) settle(search, q, look);
+  if (goes) {
+    state.error = error;
+    settle(search, q, look);
+  }
   return goes;
+}
+
+/// Whether a step limit holds the step back.
+inline bool holds(const Search& search, const Box& room, const Real* step) {
+  for (std::int32_t j = 0; j < search.problem.columns; ++j) {
+    const bool up = !(step[j] < room.high[j]);
+    const bool held = up ? room.high[j] < longest_step : !(step[j] > room.low[j]) && room.low[j] > -longest_step;
+    if (held && !limit_ends(*search.state, j, up)) return true;
+  }
+  return false;
 }
 
 /// Damped least squares (Levenberg 1944, Marquardt 1963) within the bounds, from the search's joints. Stops when the
@@ -271,22 +301,31 @@ inline bool turns_only(const Real* b, std::int32_t rows) {
   search.patience = all_patience;
   search.met = met(state, state.error) && !posture;
   search.cut = false;
+  search.held = false;
   for (std::int32_t n = 0; n < aim.most && !search.met && search.patience >= 0; ++n) {
-    search.cut = problem.budget <= (search.patience < all_patience ? aim.reserve : 0);
+    search.cut = problem.budget < (aim.keeps ? kept_iteration : per_iteration);
     if (search.cut) return;
     problem.damping = aim.bend == nullptr ? step_damping(search, search.scale) : search.scale;
     if (posture || problem.damping < least_damping) problem.damping = least_damping;
     set_pull(search, posture);
-    set_room(search);
+    Box room;
+    set_room(search, room);
     Real step[max_joints];
+    if (search.solved) {
+      for (std::int32_t j = 0; j < problem.columns; ++j) step[j] = search.ahead[j];
+    }
     const bool fitted = aim.keeps && fit_damping(search, step);
-    solve_kept(search, aim.keeps ? aim.bend : nullptr, step);
+    solve_kept(search, room, aim.keeps ? aim.bend : nullptr, aim.keeps || search.solved, step);
+    search.solved = false;
     search.predicted = 0;
     for (std::int32_t i = 0; i < problem.rows; ++i) {
       const Real left = residual(problem, i, step);
       search.predicted += left * left;
     }
-    if (!posture && !(search.cost - search.predicted > promise * search.cost)) return;
+    if (!posture && !(search.cost - search.predicted > promise * search.cost)) {
+      search.held = holds(search, room, step);
+      return;
+    }
     if (go(search, aim, step, posture) && fitted) return;
     posture = false;
     promise = aim.creeping;

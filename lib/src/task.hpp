@@ -93,13 +93,8 @@ inline void linearise(const Goal& goal, const Frame<Real>& frame, const Jacobian
                       Real rotation_weight, BoxProblem& problem) {
   const Arm<Real>& arm = *goal.arm;
   for (std::int32_t j = 0; j < arm.joint_count; ++j) {
-    Real column[6] = {0, 0, 0, 0, 0, 0};
-    const Real unit = joint_unit(goal, j);
-    for (std::int32_t i = 0; i < arm.joint_count; ++i) {
-      if (arm.coupled == 0 && i != j) continue;
-      const Real ratio = unit * arm.map[i][j];
-      for (int k = 0; k < 6; ++k) column[k] += ratio * coordinates.column[i][k];
-    }
+    Real column[6];
+    reading_column(arm, coordinates, j, joint_unit(goal, j), column);
     Real component[6];
     to_task(goal, frame, rotation_weight, column, component);
     for (std::int32_t i = 0; i < problem.rows; ++i) problem.row[i][j] = component[i];

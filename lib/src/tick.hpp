@@ -19,6 +19,12 @@ struct Goal {
   Real length_m;                         ///< what lengths are divided by
 };
 
+/// What an evaluation of the arm shows. Large, hence on the stack only of what uses it.
+struct Look {
+  Frame<Real> frame;
+  Jacobian<Real> coordinates;   ///< by joint coordinate
+};
+
 /// A tick under way. Joints in readings [rad] or [m].
 struct TickState : Goal {
   Real low[max_joints], high[max_joints]; ///< where this tick may leave the joints; last joints are inside
@@ -41,6 +47,19 @@ inline bool met(const Goal& goal, const PoseError& error) {
 /// The unit that makes a joint's motion unit-free: 1 rad, or the arm's length.
 inline Real joint_unit(const Goal& goal, std::int32_t i) {
   return ((goal.arm->prismatic_mask >> static_cast<std::uint32_t>(i)) & 1U) != 0U ? goal.length_m : Real{1};
+}
+
+/// `unit` times column j of the Jacobian by reading, from the one by joint coordinate.
+inline void reading_column(const Arm<Real>& arm, const Jacobian<Real>& coordinates, std::int32_t j, Real unit,
+                           Real* column) {
+  const bool coupled = arm.coupled != 0;
+  const std::int32_t first = coupled ? 0 : j;
+  const std::int32_t last = coupled ? arm.joint_count - 1 : j;
+  for (int k = 0; k < 6; ++k) column[k] = 0;
+  for (std::int32_t i = first; i <= last; ++i) {
+    const Real ratio = unit * arm.map[i][j];
+    for (int k = 0; k < 6; ++k) column[k] += ratio * coordinates.column[i][k];
+  }
 }
 
 }  // namespace

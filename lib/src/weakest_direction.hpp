@@ -16,7 +16,7 @@ struct Weakest {
 
 /// From the rows of `problem`, whose angles carry `rotation_weight`: four steps of inverse iteration on the triangle of
 /// J or of its transpose, whichever has fewer columns.
-[[gnu::noinline]] void find_weakest(BoxProblem& problem, Task task, Real rotation_weight, Weakest& weakest) {
+[[gnu::noinline]] void find_weakest(const BoxProblem& problem, Task task, Real rotation_weight, Weakest& weakest) {
   // Far below any singular value that matters, and far above what would overflow in two solutions.
   constexpr Real floor = sizeof(Real) == sizeof(double) ? Real(1e-11) : Real(1e-7);
   const std::int32_t rows = task_rank(task);
@@ -24,18 +24,17 @@ struct Weakest {
   const bool wide = columns > rows;
   const Real per_weight = Real{1} / rotation_weight;
   const std::int32_t turn = first_turn(task);
-  const auto entry = [&](std::int32_t row, std::int32_t column) {
-    return problem.row[row][column] * (row < turn ? Real{1} : per_weight);
-  };
   Stack stack;
   stack.size = wide ? rows : columns;
   stack.equations = wide ? columns : rows;
   const std::int32_t size = stack.size;
-  for (std::int32_t i = 0; i < size; ++i) {
-    for (std::int32_t k = 0; k < stack.equations; ++k) stack.column[i][k] = wide ? entry(i, k) : entry(k, i);
+  for (std::int32_t i = 0; i < rows; ++i) {
+    const Real scale = i < turn ? Real{1} : per_weight;
+    for (std::int32_t j = 0; j < columns; ++j) {
+      (wide ? stack.column[i][j] : stack.column[j][i]) = scale * problem.row[i][j];
+    }
   }
   factor(stack, floor, nullptr, nullptr);
-  problem.budget -= 6;
   Real* x = wide ? weakest.u : weakest.v;
   Real* y = wide ? weakest.v : weakest.u;
   // Any start will do that is not orthogonal to what is sought; unlike entries make that unlikely.
@@ -50,10 +49,17 @@ struct Weakest {
     for (std::int32_t i = 0; i < size; ++i) x[i] /= norm;
   }
   weakest.s = Real{1} / square_root(norm);
-  for (std::int32_t k = 0; k < stack.equations; ++k) {
-    Real sum = 0;
-    for (std::int32_t i = 0; i < size; ++i) sum += (wide ? entry(i, k) : entry(k, i)) * x[i];
-    y[k] = sum / weakest.s;
+  for (std::int32_t k = 0; k < stack.equations; ++k) y[k] = 0;
+  for (std::int32_t i = 0; i < rows; ++i) {
+    const Real scale = (i < turn ? Real{1} : per_weight) / weakest.s;
+    for (std::int32_t j = 0; j < columns; ++j) {
+      const Real part = scale * problem.row[i][j];
+      if (wide) {
+        y[j] += part * x[i];
+      } else {
+        y[i] += part * x[j];
+      }
+    }
   }
 }
 

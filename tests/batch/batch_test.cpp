@@ -178,7 +178,9 @@ TEST(Kill, CalibrateLeavesNothingOrEverything) {
   const TemporaryFolder folder;
   write_fleet(folder, 1, 60, false);
   const std::vector<std::string> arguments{"calibrate", folder / "in/r1.toml", folder / "in/m1.csv", "-o", folder / "out/x"};
-  const double seconds = seconds_of(arguments);
+  // The least of three: one that something else held up would set all moments too late.
+  double seconds = seconds_of(arguments);
+  for (int k = 0; k < 2; ++k) seconds = std::min(seconds, seconds_of(arguments));
   const auto whole = contents(folder / "out/x");
   ASSERT_EQ(whole.size(), 5u);
   Random random(1);

@@ -14,9 +14,13 @@ namespace {
 using namespace mdhcal;
 using test::Random;
 
+struct Bounded : BoxProblem {
+  Box box;
+};
+
 // The rows' entries up to 1, nearly dependent in every third problem; bounds from nothing to far beyond the solution.
-BoxProblem random_problem(Random& random, int n, std::int32_t rows, std::int32_t columns) {
-  BoxProblem problem{};
+Bounded random_problem(Random& random, int n, std::int32_t rows, std::int32_t columns) {
+  Bounded problem{};
   problem.rows = rows;
   problem.columns = columns;
   for (std::int32_t i = 0; i < rows; ++i) {
@@ -30,14 +34,14 @@ BoxProblem random_problem(Random& random, int n, std::int32_t rows, std::int32_t
   problem.damping = std::pow(10.0, -4.0 + 4.0 * std::fabs(random.symmetric(1)));
   for (std::int32_t j = 0; j < columns; ++j) {
     problem.pull[j] = n % 2 == 0 ? 0 : random.symmetric(0.1);
-    problem.low[j] = j == n % 11 ? 0 : -std::pow(10.0, random.symmetric(2));
-    problem.high[j] = j == n % 7 ? 0 : std::pow(10.0, random.symmetric(2));
+    problem.box.low[j] = j == n % 11 ? 0 : -std::pow(10.0, random.symmetric(2));
+    problem.box.high[j] = j == n % 7 ? 0 : std::pow(10.0, random.symmetric(2));
   }
   return problem;
 }
 
 // Minus half the slope of the objective by x_j.
-double pull_on(const BoxProblem& problem, const double* x, std::int32_t j) {
+double pull_on(const Bounded& problem, const double* x, std::int32_t j) {
   double sum = problem.damping * problem.damping * (problem.pull[j] - x[j]);
   for (std::int32_t i = 0; i < problem.rows; ++i) sum += problem.row[i][j] * residual(problem, i, x);
   return sum;
@@ -50,27 +54,27 @@ TEST(BoxLeastSquares, MeetsTheConditionsOfTheMinimum) {
   constexpr int problems = test::cases(20000);
   for (int n = 0; n < problems; ++n) {
     const auto rows = static_cast<std::int32_t>(1 + n % 7), columns = static_cast<std::int32_t>(1 + n / 7 % 8);
-    BoxProblem problem = random_problem(random, n, rows, columns);
+    Bounded problem = random_problem(random, n, rows, columns);
     double x[max_joints];
-    solve(problem, x);
+    solve(problem, problem.box, x);
     for (std::int32_t j = 0; j < columns; ++j) {
-      ASSERT_GE(x[j], problem.low[j]);
-      ASSERT_LE(x[j], problem.high[j]);
+      ASSERT_GE(x[j], problem.box.low[j]);
+      ASSERT_LE(x[j], problem.box.high[j]);
       const double pull = pull_on(problem, x, j);
       // Away from a bound nothing pulls; on one, only outwards.
-      if (x[j] < problem.high[j]) {
+      if (x[j] < problem.box.high[j]) {
         ASSERT_LT(pull, tolerance) << n << ' ' << j;
       }
-      if (x[j] > problem.low[j]) {
+      if (x[j] > problem.box.low[j]) {
         ASSERT_GT(pull, -tolerance) << n << ' ' << j;
       }
-      if (!(x[j] < problem.high[j]) || !(x[j] > problem.low[j])) ++at_bounds;
+      if (!(x[j] < problem.box.high[j]) || !(x[j] > problem.box.low[j])) ++at_bounds;
     }
   }
   EXPECT_GT(at_bounds, problems);
 }
 
-double objective(const BoxProblem& problem, const double* x) {
+double objective(const Bounded& problem, const double* x) {
   double sum = 0;
   for (std::int32_t i = 0; i < problem.rows; ++i) sum += residual(problem, i, x) * residual(problem, i, x);
   for (std::int32_t j = 0; j < problem.columns; ++j) {
@@ -87,16 +91,16 @@ TEST(BoxLeastSquares, IsUsableWithAnyBudget) {
   constexpr int problems = test::cases(20000);
   for (int n = 0; n < problems; ++n) {
     const auto rows = static_cast<std::int32_t>(1 + n % 7), columns = static_cast<std::int32_t>(1 + n / 7 % 8);
-    BoxProblem problem = random_problem(random, n, rows, columns);
+    Bounded problem = random_problem(random, n, rows, columns);
     problem.budget = n % 20 - 2;
     const std::int32_t before = problem.budget;
     double x[max_joints];
-    solve(problem, x);
+    solve(problem, problem.box, x);
     if (problem.budget <= 0) ++cut;
     EXPECT_GE(problem.budget, (before > 3 ? 3 : before) - 5) << n;
     for (std::int32_t j = 0; j < problem.columns; ++j) {
-      ASSERT_GE(x[j], problem.low[j]);
-      ASSERT_LE(x[j], problem.high[j]);
+      ASSERT_GE(x[j], problem.box.low[j]);
+      ASSERT_LE(x[j], problem.box.high[j]);
     }
     const double start = objective(problem, nothing);
     EXPECT_LE(objective(problem, x), start * (1 + 1e-12)) << n;
@@ -107,16 +111,16 @@ TEST(BoxLeastSquares, IsUsableWithAnyBudget) {
 TEST(BoxLeastSquares, WithRoomIsTheSolutionWithoutBounds) {
   Random random(42);
   for (int n = 0; n < 1000; ++n) {
-    BoxProblem problem = random_problem(random, n, 6, 6);
+    Bounded problem = random_problem(random, n, 6, 6);
     double free[max_joints], bounded[max_joints];
     solve_free(problem, free);
     for (std::int32_t j = 0; j < 6; ++j) {
-      problem.low[j] = -1e9;
-      problem.high[j] = 1e9;
+      problem.box.low[j] = -1e9;
+      problem.box.high[j] = 1e9;
       ASSERT_LT(std::fabs(pull_on(problem, free, j)), 1e-9);
     }
-    EXPECT_TRUE(inside(problem, free));
-    solve(problem, bounded);
+    EXPECT_TRUE(inside(problem, problem.box, free));
+    solve(problem, problem.box, bounded);
     for (std::int32_t j = 0; j < 6; ++j) ASSERT_EQ(bounded[j], free[j]);
   }
 }

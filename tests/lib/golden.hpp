@@ -141,9 +141,9 @@ std::uint64_t golden_hash(int operations) {
 /// where a result does; if it is one of forward() or tick(), arithmetic_id (mdhcal/self_test.hpp) changes as well.
 inline constexpr int golden_operations = 100000;
 inline constexpr int golden_short = 1000;
-inline constexpr std::uint64_t golden_double = 0x4673b43faddf6c8eULL;
-inline constexpr std::uint64_t golden_float = 0x60292a6f2ac32993ULL;
-inline constexpr std::uint64_t golden_double_short = 0x6638fe629405d460ULL;
-inline constexpr std::uint64_t golden_float_short = 0xcae5562890770b78ULL;
+inline constexpr std::uint64_t golden_double = 0x54F5246CB055AD97ULL;
+inline constexpr std::uint64_t golden_float = 0x4B1AFA152B6F37E6ULL;
+inline constexpr std::uint64_t golden_double_short = 0x21EF12DA601C8AE7ULL;
+inline constexpr std::uint64_t golden_float_short = 0x981557E4B1728209ULL;
 
 }  // namespace mdhcal::test
