@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Private to lib/src; include after real.hpp. The servo tick where limits, singularities or free joints matter: which
-// minimisations (search.hpp) it takes, and what is claimed of their result.
+// Private to lib/src; include after real.hpp. The servo tick: the regular one, and where limits, singularities or free joints
+// matter, which minimisations (search.hpp) it takes, and what is claimed of their result.
 #pragma once
 
 #include "regular_tick.hpp"
@@ -261,8 +261,7 @@ inline Real weighed(const TickState& state) {
 }
 
 /// The best that can be had of a pose that is not met, in four iterations (two where it has no chance at all) and what is
-/// left of the work, but at least one. In the end the weakest direction is the
-/// result's.
+/// left of the work, but at least one. In the end the weakest direction is the result's.
 [[gnu::noinline]] void make_the_best(Search& search, Bend& bend, Chance found) {
   TickState& state = *search.state;
   const bool keeps = start_over(search, bend, found);
@@ -324,8 +323,7 @@ inline Real weighed(const TickState& state) {
   if (found == Chance::some) {
     const Real cost_before = search.cost;
     // Where only the posture is left to go to, nothing better can be made of the last joints.
-    const std::int32_t reserve =
-        met(state, state.error) ? 0 : best_work + (bend.of_last ? 0 : weakest_and_slope);
+    const std::int32_t reserve = met(state, state.error) ? 0 : best_work + (bend.of_last ? 0 : weakest_and_slope);
     search.problem.budget -= reserve;
     minimise(search, {care, nullptr, false, posture, half, half, max_tick_iterations});
     came_far = !search.met && cost_before > far_off && search.cost < most_gone * cost_before;

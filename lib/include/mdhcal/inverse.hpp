@@ -23,7 +23,7 @@ struct TickOptions {
   Real rotation_weight;         ///< weight of the rotation error there; > 0 [1]
   std::int32_t max_iterations;  ///< bound of a tick's work, 1 ... max_tick_iterations: an iteration is an evaluation of
                                 ///< the arm and a factorization of its equations, all else counts in proportion; where
-                                ///< the pose cannot be met up to nine more
+                                ///< the pose cannot be met up to seven more
   Task task;
   Real posture[max_joints];     ///< where joints that the task leaves free should go [rad] or [m]
   Real posture_gain;            ///< part of the way to it in one tick, 0 (off) ... 1
