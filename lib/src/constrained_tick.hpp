@@ -122,7 +122,7 @@ inline Real falling(Real x, Real low, Real high) {
   for (std::int32_t i = 0; i < search.problem.rows; ++i) bend.wanted += weakest.u[i] * search.problem.b[i];
   const Real* turn = weakest.u + 3;
   bend.fold = state.options->task == Task::pose
-                  ? falling(square_root(dot(turn, turn)), Real(0.15), Real(0.25)) *
+                  ? falling(square_root(dot(turn, turn)), Real(0.2), Real(0.3)) *
                         (Real{1} - falling(magnitude(bend.along), Real(0.04), Real(0.06)))
                   : Real{1};
 }

@@ -138,10 +138,11 @@ inline Real linear_rise(const TickState& state, const Bend& bend, const Real* q,
   return at_last;
 }
 
-/// What a minimisation may not take the singular value below.
+/// What a minimisation may not take the singular value below: where that is close already, a little above where it is, or
+/// what the linear model leaves out would take it through the fold in a few thousand ticks.
 inline Real least_of(const Bend& bend) {
   constexpr Real margin = Real(0.005);
-  return bend.s < margin ? bend.s : margin;
+  return bend.s < margin ? bend.s + Real(0.01) * (margin - bend.s) : margin;
 }
 
 /// Solves for the step, which is that without bounds already if `solved`; where it takes the singular value that is to be
