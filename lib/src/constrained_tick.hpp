@@ -107,6 +107,18 @@ inline Real falling(Real x, Real low, Real high) {
   return x < low ? Real{1} : (x > high ? Real{0} : (high - x) / (high - low));
 }
 
+/// How far the weakest direction is one along which the arm folds, which shifts the flange and bends: 1 at a fold, 0 where it
+/// turns the flange (a wrist) or goes on without bending (a shoulder), between them a straight line. What hardly turns the
+/// flange need hardly bend; what turns it more has to bend as much as hardly any wrist does. A fold that is almost reached may
+/// turn the flange the more, the more it bends.
+[[gnu::noinline]] Real fold_of(Real s, Real turn, Real curve) {
+  const Real shifts = falling(turn, Real(0.1), Real(0.2));
+  const Real reached = falling(s, Real(0.008), Real(0.012));
+  const Real may_turn = curve > Real(0.05) ? Real{6} * (curve - Real(0.05)) * reached : Real{0};
+  return falling(turn - may_turn, Real(0.2), Real(0.3)) *
+         (Real{1} - falling(curve, Real(0.04) - Real(0.038) * shifts, Real(0.06) - Real(0.056) * shifts));
+}
+
 /// Finds what the weakest direction does at the search's joints, errors alike, which `look` is of.
 [[gnu::noinline]] void find_bend(Search& search, const Look& look, Bend& bend) {
   TickState& state = *search.state;
@@ -122,17 +134,14 @@ inline Real falling(Real x, Real low, Real high) {
   for (std::int32_t i = 0; i < search.problem.rows; ++i) bend.wanted += weakest.u[i] * search.problem.b[i];
   const Real* turn = weakest.u + 3;
   bend.fold = state.options->task == Task::pose
-                  ? falling(square_root(dot(turn, turn)), Real(0.2), Real(0.3)) *
-                        (Real{1} - falling(magnitude(bend.along), Real(0.04), Real(0.06)))
+                  ? fold_of(bend.s, square_root(dot(turn, turn)), magnitude(bend.along))
                   : Real{1};
 }
 
 /// Starts at q and finds what the weakest direction does there.
 [[gnu::noinline]] void start_along(Search& search, const Real* q, Bend& bend) {
-  search.rotation_weight = 1;
   Look look;
-  look_at(search, q, look, search.state->error);
-  settle(search, q, look);
+  start(search, q, look);
   find_bend(search, look, bend);
 }
 
@@ -241,25 +250,6 @@ inline Real callers_weight(const TickState& state) {
   return (bend.fold > Real(0.5) || (s >= Real(0.1) && !comes_round)) && s > Real(1e-6);
 }
 
-/// The error's square by the caller's weights.
-inline Real weighed(const TickState& state) {
-  const Real position = state.error.position_m / state.length_m;
-  const Real rotation = state.error.rotation_rad * callers_weight(state);
-  return position * position + rotation * rotation;
-}
-
-/// Whether the search has gone far from the last joints [rad, or lengths of the arm] and lost by the caller's weights: the
-/// next tick would go it back. Unless it halved the cost: where that is large, staying would be for ever.
-[[gnu::noinline]] bool gone_for_nothing(const Search& search, Real cost_before, Real weighed_before) {
-  constexpr Real far = Real(0.05);
-  const TickState& state = *search.state;
-  if (search.met || search.cost < half * cost_before || !(weighed(state) > weighed_before)) return false;
-  for (std::int32_t j = 0; j < state.arm->joint_count; ++j) {
-    if (magnitude(state.q[j] - state.last[j]) > far * joint_unit(state, j)) return true;
-  }
-  return false;
-}
-
 /// The best that can be had of a pose that is not met, in four iterations (two where it has no chance at all) and what is
 /// left of the work, but at least one. In the end the weakest direction is the result's.
 [[gnu::noinline]] void make_the_best(Search& search, Bend& bend, Chance found) {
@@ -269,20 +259,13 @@ inline Real weighed(const TickState& state) {
   // Set aside for the end; of the rest one iteration at least.
   search.problem.budget -= weakest_alone;
   if (search.problem.budget < kept_iteration) search.problem.budget = kept_iteration;
-  const Real weighed_before = weighed(state);
-  const Real cost_before = search.cost;
   const Real weight = search.rotation_weight;
   const bool weighted = weight < weighted_below;
   // A wrist comes round only slowly.
   const Real creeping = weighted ? Real(0.003) : Real(0.02);
   const Real damping = weighted ? (keeps ? Real{2} * weight : weight) : care;
   minimise(search, {damping, &bend, keeps, false, little, creeping, found == Chance::none ? 2 : 4});
-  if (gone_for_nothing(search, cost_before, weighed_before)) {
-    start(search, state.last);
-    search.weakest.s = bend.s;
-  } else {
-    find_weakest(search.problem, state.options->task, weight, search.weakest);
-  }
+  find_weakest(search.problem, state.options->task, weight, search.weakest);
 }
 
 /// The regular tick, where there is one; if it fails, puts the search at the last joints, by what that saw of them. Returns
@@ -302,7 +285,7 @@ inline Real weighed(const TickState& state) {
 
 /// The tick: the regular one, or if that fails the pose is tried with all errors alike; if that fails, the best is made of
 /// it. Returns the status but for joints outside a limit.
-[[gnu::noinline]] Status any_tick(TickState& state) {
+[[gnu::noinline]] Status solve_tick(TickState& state) {
   Search search;
   Bend bend;
   search.state = &state;

@@ -106,7 +106,7 @@ Status tick(const Arm<Real>& arm, const TickOptions<Real>& options, const Pose<R
   state.step_mask = 0;
   state.limit_mask = 0;
   state.smallest_singular_value = 1;  // until something is known of it
-  Status status = any_tick(state);
+  Status status = solve_tick(state);
   for (std::int32_t j = 0; j < arm.joint_count; ++j) q[j] = state.q[j];
   const std::uint32_t outside = outside_limits(arm, q);
   if (outside != 0U) status = Status::joint_limited;

@@ -53,7 +53,7 @@ struct Bend {
   Real slope[max_joints];   ///< of the singular value, by the unit-free readings
   Real along;               ///< the slope along the direction
   Real wanted;              ///< the error's component that the direction answers
-  Real fold;                ///< 1 on a straight elbow: the direction shifts the flange and bends; 0 on a wrist; else between
+  Real fold;                ///< 1 on a straight elbow, 0 on a wrist: fold_of()
   bool of_last;             ///< at the last joints
 };
 
@@ -104,12 +104,16 @@ inline void weigh_rotation(Search& search, Real weight) {
   search.cost = square(problem.b, problem.rows);
 }
 
-/// Starts a search with all errors alike at q.
-[[gnu::noinline]] void start(Search& search, const Real* q) {
+/// Starts a search with all errors alike at q. `look` receives what is seen there.
+inline void start(Search& search, const Real* q, Look& look) {
   search.rotation_weight = 1;
-  Look look;
   look_at(search, q, look, search.state->error);
   settle(search, q, look);
+}
+
+[[gnu::noinline]] void start(Search& search, const Real* q) {
+  Look look;
+  start(search, q, look);
 }
 
 /// Joints whose arm's limit, not the step limit, ends the way down or up.

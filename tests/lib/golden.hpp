@@ -141,9 +141,9 @@ std::uint64_t golden_hash(int operations) {
 /// where a result does; if it is one of forward() or tick(), arithmetic_id (mdhcal/self_test.hpp) changes as well.
 inline constexpr int golden_operations = 100000;
 inline constexpr int golden_short = 1000;
-inline constexpr std::uint64_t golden_double = 0x0894313083C9BFB1ULL;
-inline constexpr std::uint64_t golden_float = 0x3E7611C0F329BDF5ULL;
-inline constexpr std::uint64_t golden_double_short = 0xF59035D547FBB349ULL;
-inline constexpr std::uint64_t golden_float_short = 0x1CB49F069F516082ULL;
+inline constexpr std::uint64_t golden_double = 0x07657070460273AFULL;
+inline constexpr std::uint64_t golden_float = 0xF8C7F61C4FBF97E4ULL;
+inline constexpr std::uint64_t golden_double_short = 0x9FBEA7681C20D46FULL;
+inline constexpr std::uint64_t golden_float_short = 0x4490004CC59CF2B4ULL;
 
 }  // namespace mdhcal::test
