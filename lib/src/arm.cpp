@@ -2,13 +2,13 @@
 #include "mdhcal/arm.hpp"
 
 #include "trigonometry.hpp"
+#include "within.hpp"
 
 namespace mdhcal {
 
 namespace {
 
-// A comparison with NaN is false, so "inside" refuses it.
-bool inside(double value, double bound) { return value >= -bound && value <= bound; }
+bool inside(double value, double bound) { return within(-bound, value, bound); }
 
 bool valid(const Link& link) {
   return inside(link.alpha_rad, max_angle_rad) && inside(link.a_m, max_length_m) &&
@@ -25,7 +25,7 @@ bool valid(const Joint& joint, std::int32_t own, std::int32_t count) {
   if (joint.has_max == 1 && !inside(joint.max, max_reading)) return false;
   if (joint.has_min == 1 && joint.has_max == 1 && !(joint.min <= joint.max)) return false;
   for (std::int32_t j = 0; j < static_cast<std::int32_t>(max_joints); ++j) {
-    const bool zero = joint.coupling[j] >= 0.0 && joint.coupling[j] <= 0.0;
+    const bool zero = inside(joint.coupling[j], 0.0);
     if ((j == own || j >= count) ? !zero : !inside(joint.coupling[j], max_coupling)) return false;
   }
   return true;
@@ -33,7 +33,10 @@ bool valid(const Joint& joint, std::int32_t own, std::int32_t count) {
 
 bool valid(const Pose<double>& pose) {
   double norm2 = 0.0;
-  for (double c : pose.quaternion) norm2 += c * c;
+  for (double c : pose.quaternion) {
+    if (!inside(c, 2.0)) return false;
+    norm2 += c * c;
+  }
   if (!(norm2 >= 1.0 - 1e-9 && norm2 <= 1.0 + 1e-9)) return false;
   for (double p : pose.position_m) {
     if (!inside(p, max_length_m)) return false;

@@ -6,6 +6,7 @@
 #include "real.hpp"
 #include "rotation.hpp"
 #include "svd.hpp"
+#include "within.hpp"
 
 namespace mdhcal {
 
@@ -58,8 +59,8 @@ const Arm<Real>& current(const CompensatorModel<Real>& model, const CompensatorS
 }
 
 bool valid(const CompensatorState<Real>& state) {
-  return state.progress >= Real{0} && state.progress <= Real{1} && state.target >= Real{0} && state.target <= Real{1} &&
-         state.rate >= Real{0} && state.rate <= fastest;
+  return within(Real{0}, state.progress, Real{1}) && within(Real{0}, state.target, Real{1}) &&
+         within(Real{0}, state.rate, fastest);
 }
 
 }  // namespace
@@ -83,14 +84,14 @@ CompensatorState<Real> rest(const CompensatorModel<Real>&, bool corrected) noexc
 }
 
 Status start_ramp(CompensatorState<Real>& state, bool corrected, Real duration_s) noexcept {
-  if (!valid(state) || !(duration_s >= Real{0} && duration_s <= Real(1e6))) return Status::bad_input;
+  if (!valid(state) || !within(Real{0}, duration_s, Real(1e6))) return Status::bad_input;
   state.target = corrected ? Real{1} : Real{0};
   state.rate = duration_s > Real(1e-9) ? Real{1} / duration_s : fastest;
   return Status::ok;
 }
 
 Status advance(CompensatorState<Real>& state, Real period_s) noexcept {
-  if (!valid(state) || !(period_s >= Real{0} && period_s <= Real(1e3))) return Status::bad_input;
+  if (!valid(state) || !within(Real{0}, period_s, Real(1e3))) return Status::bad_input;
   const Real step = state.rate * period_s;
   if (state.progress < state.target) {
     state.progress = state.target - state.progress > step ? state.progress + step : state.target;
@@ -130,10 +131,10 @@ Status joint_velocities(const Arm<Real>& arm, const Real* q, const Real* flange_
   if (!readings_valid(arm, q)) return Status::bad_input;
   const std::int32_t joints = arm.joint_count;
   for (int k = 0; k < 6; ++k) {
-    if (!(magnitude(flange_velocity[k]) <= Real(1e6))) return Status::bad_input;
+    if (!within(Real(-1e6), flange_velocity[k], Real(1e6))) return Status::bad_input;
   }
   for (std::int32_t j = 0; j < joints; ++j) {
-    if (!(max_velocity[j] > Real{0} && max_velocity[j] <= Real(1e6))) return Status::bad_input;
+    if (!within(Real{0}, max_velocity[j], Real(1e6)) || !(max_velocity[j] > Real{0})) return Status::bad_input;
   }
   const Real length_m = arm.reach_m > Real(1e-6) ? arm.reach_m : Real{1};
   Frame<Real> frame;

@@ -5,6 +5,7 @@
 // The tick's parts see Real.
 #include "constrained_tick.hpp"
 #include "tick_valid.hpp"
+#include "within.hpp"
 
 namespace mdhcal {
 
@@ -12,7 +13,7 @@ namespace {
 
 constexpr Real largest = static_cast<Real>(max_reading);
 
-bool positive(Real x) { return x > Real{0} && x <= Real(1e6); }
+bool positive(Real x) { return within(Real{0}, x, Real(1e6)) && x > Real{0}; }
 
 bool valid(const TickOptions<Real>& options, std::int32_t joints) {
   if (!positive(options.position_tolerance_m) || !positive(options.rotation_tolerance_rad)) return false;
@@ -22,10 +23,10 @@ bool valid(const TickOptions<Real>& options, std::int32_t joints) {
       options.task != Task::planar) {
     return false;
   }
-  if (!(options.posture_gain >= Real{0} && options.posture_gain <= Real{1})) return false;
+  if (!within(Real{0}, options.posture_gain, Real{1})) return false;
   for (std::int32_t j = 0; j < joints; ++j) {
     if (!positive(options.max_step[j])) return false;
-    if (options.posture_gain > Real{0} && !(magnitude(options.posture[j]) <= largest)) return false;
+    if (options.posture_gain > Real{0} && !within(-largest, options.posture[j], largest)) return false;
   }
   return true;
 }
@@ -34,12 +35,13 @@ bool valid(const Pose<Real>& pose) {
   constexpr Real tolerance = sizeof(Real) == sizeof(double) ? Real(1e-6) : Real(1e-5);
   const Real* c = pose.quaternion;
   for (int k = 0; k < 4; ++k) {
-    if (!(magnitude(c[k]) <= Real{2})) return false;
+    if (!within(Real{-2}, c[k], Real{2})) return false;
   }
   const Real square = (c[0] * c[0] + c[1] * c[1]) + (c[2] * c[2] + c[3] * c[3]);
   if (!(magnitude(square - Real{1}) <= Real{2} * tolerance)) return false;
+  constexpr Real furthest = static_cast<Real>(max_target_m);
   for (int k = 0; k < 3; ++k) {
-    if (!(magnitude(pose.position_m[k]) <= static_cast<Real>(max_target_m))) return false;
+    if (!within(-furthest, pose.position_m[k], furthest)) return false;
   }
   return true;
 }

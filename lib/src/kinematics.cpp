@@ -5,6 +5,7 @@
 #include "real.hpp"
 #include "rotation.hpp"
 #include "sin_cos.hpp"
+#include "within.hpp"
 
 namespace mdhcal {
 
@@ -108,7 +109,7 @@ constexpr Frame<Real> identity{{1, 0, 0, 0, 1, 0, 0, 0, 1}, {0, 0, 0}};
 
 bool readings_valid(const Arm<Real>& arm, const Real* q) noexcept {
   for (std::int32_t i = 0; i < arm.joint_count; ++i) {
-    if (!(magnitude(q[i]) <= reading_bound)) return false;
+    if (!within(-reading_bound, q[i], reading_bound)) return false;
   }
   return true;
 }

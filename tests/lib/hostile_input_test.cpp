@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // NaN, infinities, subnormal and huge numbers in every number that a caller passes, one at a time: bad_input with every
-// output as it was, or another status with finite outputs. tick() has a test of its own.
+// output as it was, or another status with finite outputs; and never an exception that traps where a caller has enabled it.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -12,6 +12,7 @@
 #include "mdhcal/compensator.hpp"
 #include "mdhcal/solutions.hpp"
 #include "tests/lib/poses.hpp"
+#include "tests/support/exceptions.hpp"
 
 namespace {
 
@@ -93,13 +94,19 @@ class HostileInput : public ::testing::Test {
       const Real kept = *slots[slot];
       for (const Real value : {nan, -nan, infinity, -infinity, huge, -huge, std::numeric_limits<Real>::max()}) {
         *slots[slot] = value;
+        clear_exceptions();
         const Outcome outcome = call();
+        EXPECT_FALSE(exceptions_raised())
+            << name << " slot " << slot << " value " << value;
         EXPECT_EQ(outcome.status, Status::bad_input) << name << " slot " << slot << " value " << value;
         EXPECT_TRUE(outcome.untouched) << name << " slot " << slot << " value " << value;
       }
       for (const Real value : {tiny, -tiny, Real(0), -Real(0), std::numeric_limits<Real>::min(), Real(1e-30F)}) {
         *slots[slot] = value;
+        clear_exceptions();
         const Outcome outcome = call();
+        EXPECT_FALSE(exceptions_raised())
+            << name << " slot " << slot << " value " << value;
         EXPECT_TRUE(outcome.status == Status::bad_input ? outcome.untouched : outcome.finite)
             << name << " slot " << slot << " value " << value;
       }

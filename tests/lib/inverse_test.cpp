@@ -8,6 +8,7 @@
 
 #include "mdhcal/kinematics.hpp"
 #include "tests/lib/arms.hpp"
+#include "tests/support/exceptions.hpp"
 
 namespace {
 
@@ -107,13 +108,42 @@ TYPED_TEST(Tick, LeavesTheJointsAloneOnBadInput) {
       }
       Real before[6];
       std::copy(q, q + 6, before);
-      EXPECT_EQ(tick(arm, default_tick_options(arm), pose, q), Status::bad_input) << slot;
+      const TickOptions<Real> options = default_tick_options(arm);
+      clear_exceptions();
+      EXPECT_EQ(tick(arm, options, pose, q), Status::bad_input) << slot;
+      EXPECT_FALSE(exceptions_raised()) << slot;
       for (int i = 0; i < 6; ++i) {
         if (i != slot) {
           EXPECT_EQ(q[i], before[i]);
         }
       }
     }
+  }
+}
+
+// Regular, singular and unreachable targets, from exactly singular joints too: nothing that traps where that is enabled.
+TYPED_TEST(Tick, RaisesNoExceptionThatTraps) {
+  using Real = TypeParam;
+  Random random(6);
+  Arm<Real> arm{};
+  ASSERT_EQ(make_arm(with_errors(ur5(), random, 1e-3, 0.1 * deg), arm), Status::ok);
+  const TickOptions<Real> options = default_tick_options(arm);
+  for (int n = 0; n < cases(20000); ++n) {
+    Real q[6];
+    for (Real& joint : q) joint = static_cast<Real>(random.symmetric(pi));
+    if (n % 3 == 0) q[4] = 0;
+    if (n % 5 == 0) q[2] = 0;
+    Pose<Real> target{};
+    ASSERT_EQ(forward(arm, q, target), Status::ok);
+    if (n % 2 == 0) {
+      for (Real& x : target.position_m) x *= Real(1.5);
+    }
+    if (n % 7 != 0) {
+      for (Real& joint : q) joint += static_cast<Real>(random.symmetric(0.003));
+    }
+    clear_exceptions();
+    ASSERT_NE(tick(arm, options, target, q), Status::bad_input) << n;
+    ASSERT_FALSE(exceptions_raised()) << n;
   }
 }
 
