@@ -5,7 +5,7 @@
 
 #include <Eigen/Dense>
 
-#include "lib/src/trigonometry.hpp"
+#include "lib/src/number/trigonometry.hpp"
 #include "mdhcal/geometry.hpp"
 
 namespace mdhcal::bench {

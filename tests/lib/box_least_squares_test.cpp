@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The solver of a tick's step against the conditions that mark the minimum within bounds (Karush 1939; Kuhn, Tucker 1951).
 #define MDHCAL_REAL double
-#include "lib/src/box_least_squares.hpp"
+#include "lib/src/inverse/box_least_squares.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The square root for processors without one in double, against the machine's own, which IEEE 754 pins to the last bit.
-#include "lib/src/square_root.hpp"
+#include "lib/src/number/square_root.hpp"
 
 #include <gtest/gtest.h>
 

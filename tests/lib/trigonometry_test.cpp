@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "lib/src/trigonometry.hpp"
+#include "lib/src/number/trigonometry.hpp"
 
 #include <gtest/gtest.h>
 

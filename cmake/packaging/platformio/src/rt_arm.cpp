@@ -1,2 +1,2 @@
 // SPDX-License-Identifier: MIT
-#include "../../../../lib/src/arm.cpp"
+#include "../../../../lib/src/arm/arm.cpp"

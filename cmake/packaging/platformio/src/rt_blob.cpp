@@ -1,2 +1,2 @@
 // SPDX-License-Identifier: MIT
-#include "../../../../lib/src/blob.cpp"
+#include "../../../../lib/src/blob/blob.cpp"

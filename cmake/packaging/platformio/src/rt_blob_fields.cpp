@@ -1,2 +1,2 @@
 // SPDX-License-Identifier: MIT
-#include "../../../../lib/src/blob_fields.cpp"
+#include "../../../../lib/src/blob/blob_fields.cpp"

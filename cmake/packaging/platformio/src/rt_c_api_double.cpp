@@ -1,3 +1,3 @@
 // SPDX-License-Identifier: MIT
 #define MDHCAL_REAL double
-#include "../../../../lib/src/c_api.cpp"
+#include "../../../../lib/src/loop/c_api.cpp"

@@ -1,2 +1,2 @@
 // SPDX-License-Identifier: MIT
-#include "../../../../lib/src/c_text.cpp"
+#include "../../../../lib/src/loop/c_text.cpp"

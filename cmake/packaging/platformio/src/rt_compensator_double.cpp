@@ -1,3 +1,3 @@
 // SPDX-License-Identifier: MIT
 #define MDHCAL_REAL double
-#include "../../../../lib/src/compensator.cpp"
+#include "../../../../lib/src/loop/compensator.cpp"

@@ -1,2 +1,2 @@
 // SPDX-License-Identifier: MIT
-#include "../../../../lib/src/crc32.cpp"
+#include "../../../../lib/src/blob/crc32.cpp"

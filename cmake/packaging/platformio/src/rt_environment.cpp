@@ -1,2 +1,2 @@
 // SPDX-License-Identifier: MIT
-#include "../../../../lib/src/environment.cpp"
+#include "../../../../lib/src/number/environment.cpp"

@@ -1,3 +1,3 @@
 // SPDX-License-Identifier: MIT
 #define MDHCAL_REAL float
-#include "../../../../lib/src/inverse.cpp"
+#include "../../../../lib/src/inverse/inverse.cpp"

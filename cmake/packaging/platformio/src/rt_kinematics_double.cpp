@@ -1,3 +1,3 @@
 // SPDX-License-Identifier: MIT
 #define MDHCAL_REAL double
-#include "../../../../lib/src/kinematics.cpp"
+#include "../../../../lib/src/arm/kinematics.cpp"

@@ -1,3 +1,3 @@
 // SPDX-License-Identifier: MIT
 #define MDHCAL_REAL double
-#include "../../../../lib/src/self_test.cpp"
+#include "../../../../lib/src/blob/self_test.cpp"

@@ -1,2 +1,2 @@
 // SPDX-License-Identifier: MIT
-#include "../../../../lib/src/slot.cpp"
+#include "../../../../lib/src/blob/slot.cpp"

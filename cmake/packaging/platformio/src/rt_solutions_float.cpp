@@ -1,3 +1,3 @@
 // SPDX-License-Identifier: MIT
 #define MDHCAL_REAL float
-#include "../../../../lib/src/solutions.cpp"
+#include "../../../../lib/src/inverse/solutions.cpp"

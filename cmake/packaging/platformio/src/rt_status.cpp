@@ -1,2 +1,2 @@
 // SPDX-License-Identifier: MIT
-#include "../../../../lib/src/status.cpp"
+#include "../../../../lib/src/number/status.cpp"

@@ -1,3 +1,3 @@
 // SPDX-License-Identifier: MIT
 #define MDHCAL_REAL float
-#include "../../../../lib/src/trigonometry.cpp"
+#include "../../../../lib/src/number/trigonometry.cpp"

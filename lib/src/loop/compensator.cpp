@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include "mdhcal/compensator.hpp"
 
-#include "chain.hpp"
+#include "arm/chain.hpp"
 #include "mdhcal/environment.hpp"
-#include "real.hpp"
-#include "rotation.hpp"
-#include "svd.hpp"
-#include "within.hpp"
+#include "number/real.hpp"
+#include "arm/rotation.hpp"
+#include "inverse/svd.hpp"
+#include "number/compare.hpp"
 
 namespace mdhcal {
 

@@ -3,9 +3,9 @@
 #pragma once
 
 #include "mdhcal/inverse.hpp"
-#include "real.hpp"
-#include "rotation.hpp"
-#include "trigonometry.hpp"
+#include "number/real.hpp"
+#include "arm/rotation.hpp"
+#include "number/trigonometry.hpp"
 
 namespace mdhcal {
 namespace {

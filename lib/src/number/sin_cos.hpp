@@ -5,9 +5,9 @@
 #include <cstdint>
 #include <cstring>
 
-#include "real.hpp"
-#include "rotation.hpp"
-#include "trigonometry.hpp"
+#include "number/compare.hpp"
+#include "number/real.hpp"
+#include "number/trigonometry.hpp"
 
 namespace mdhcal {
 namespace {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "mdhcal/arm.hpp"
 
-#include "trigonometry.hpp"
-#include "within.hpp"
+#include "number/trigonometry.hpp"
+#include "number/compare.hpp"
 
 namespace mdhcal {
 
@@ -60,8 +60,6 @@ void to_matrix(const double (&q)[4], Real (&r)[9]) {
   r[7] = static_cast<Real>(2.0 * (y * z + w * x));
   r[8] = static_cast<Real>(1.0 - 2.0 * (x * x + y * y));
 }
-
-double magnitude(double value) { return value < 0.0 ? -value : value; }
 
 template <class Real>
 Status prepare(const Geometry& geometry, Arm<Real>& arm) {

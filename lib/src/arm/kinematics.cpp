@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include "mdhcal/kinematics.hpp"
 
-#include "chain.hpp"
-#include "real.hpp"
-#include "rotation.hpp"
-#include "sin_cos.hpp"
-#include "within.hpp"
+#include "arm/chain.hpp"
+#include "number/real.hpp"
+#include "arm/rotation.hpp"
+#include "number/sin_cos.hpp"
+#include "number/compare.hpp"
 
 namespace mdhcal {
 

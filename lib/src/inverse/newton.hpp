@@ -2,8 +2,8 @@
 // Private to lib/src; include after real.hpp. The regular step of a six-joint arm: J dq = e by Householder QR.
 #pragma once
 
-#include "real.hpp"
-#include "rotation.hpp"
+#include "number/real.hpp"
+#include "arm/rotation.hpp"
 
 namespace mdhcal {
 namespace {

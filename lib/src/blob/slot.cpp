@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "mdhcal/slot.hpp"
 
-#include "little_endian.hpp"
+#include "blob/little_endian.hpp"
 #include "mdhcal/crc32.hpp"
 
 namespace mdhcal {

@@ -5,6 +5,8 @@
 
 #include <cfloat>
 
+#include "number/square_root.hpp"
+
 #ifndef MDHCAL_REAL
 #error "compile with MDHCAL_REAL=double or MDHCAL_REAL=float"
 #endif
@@ -13,5 +15,19 @@
 static_assert(FLT_EVAL_METHOD == 0, "float and double must be evaluated in their own precision");
 
 namespace mdhcal {
+
 using Real = MDHCAL_REAL;
+
+static inline Real square_root(Real x) {
+  if constexpr (sizeof(Real) == sizeof(double)) {
+#if defined(__arm__) && (!defined(__ARM_FP) || (__ARM_FP & 8) == 0)
+    return static_cast<Real>(integer_square_root(static_cast<double>(x)));
+#else
+    return static_cast<Real>(__builtin_sqrt(static_cast<double>(x)));
+#endif
+  } else {
+    return static_cast<Real>(__builtin_sqrtf(static_cast<float>(x)));
+  }
 }
+
+}  // namespace mdhcal

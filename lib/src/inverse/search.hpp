@@ -3,7 +3,7 @@
 // within the step and joint limits.
 #pragma once
 
-#include "weakest_direction.hpp"
+#include "inverse/weakest_direction.hpp"
 
 namespace mdhcal {
 namespace {

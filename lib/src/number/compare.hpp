@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Private to lib/src. The comparison for numbers that may be NaN. Internal linkage throughout.
+// Private to lib/src. Comparisons and sizes of numbers that may be NaN. Internal linkage throughout.
 #pragma once
 
 namespace mdhcal {
@@ -11,6 +11,10 @@ template <class T>
 inline bool within(T low, T x, T high) {
   return __builtin_isgreaterequal(x, low) && __builtin_islessequal(x, high);
 }
+
+/// |x|; the sign bit is cleared, of a zero and of a NaN too.
+inline double magnitude(double x) { return __builtin_fabs(x); }
+inline float magnitude(float x) { return __builtin_fabsf(x); }
 
 }  // namespace
 }  // namespace mdhcal

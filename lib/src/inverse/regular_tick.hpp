@@ -2,8 +2,8 @@
 // Private to lib/src; include after real.hpp. The regular case of a servo tick of a six-joint arm.
 #pragma once
 
-#include "newton.hpp"
-#include "tick.hpp"
+#include "inverse/newton.hpp"
+#include "inverse/tick.hpp"
 
 namespace mdhcal {
 namespace {

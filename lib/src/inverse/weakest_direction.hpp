@@ -2,7 +2,7 @@
 // Private to lib/src; include after real.hpp. The smallest singular value of the task's Jacobian and how it changes.
 #pragma once
 
-#include "task.hpp"
+#include "inverse/task.hpp"
 
 namespace mdhcal {
 namespace {

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-#include "trigonometry.hpp"
+#include "number/trigonometry.hpp"
 
-#include "real.hpp"
-#include "rotation.hpp"
-#include "sin_cos.hpp"
+#include "number/compare.hpp"
+#include "number/real.hpp"
+#include "number/sin_cos.hpp"
 
 namespace mdhcal {
 

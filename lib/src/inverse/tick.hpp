@@ -2,11 +2,11 @@
 // Private to lib/src; include after real.hpp. What a search for joints goes by, and a servo tick's state.
 #pragma once
 
-#include "chain.hpp"
+#include "arm/chain.hpp"
 #include "mdhcal/inverse.hpp"
-#include "pose_error.hpp"
-#include "real.hpp"
-#include "rotation.hpp"
+#include "inverse/pose_error.hpp"
+#include "number/real.hpp"
+#include "arm/rotation.hpp"
 
 namespace mdhcal {
 namespace {

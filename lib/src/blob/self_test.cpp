@@ -5,7 +5,7 @@
 
 #include "mdhcal/inverse.hpp"
 #include "mdhcal/kinematics.hpp"
-#include "real.hpp"
+#include "number/real.hpp"
 
 namespace mdhcal {
 

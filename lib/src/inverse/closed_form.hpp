@@ -2,11 +2,11 @@
 // Private to lib/src; include after real.hpp. Closed-form inverse kinematics of the nominal families, as starting values.
 #pragma once
 
-#include "chain.hpp"
+#include "arm/chain.hpp"
 #include "mdhcal/solutions.hpp"
-#include "real.hpp"
-#include "rotation.hpp"
-#include "trigonometry.hpp"
+#include "number/real.hpp"
+#include "arm/rotation.hpp"
+#include "number/trigonometry.hpp"
 
 namespace mdhcal {
 namespace {

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include "mdhcal/solutions.hpp"
 
-#include "chain.hpp"
-#include "closed_form.hpp"
-#include "levenberg.hpp"
-#include "real.hpp"
-#include "tick_valid.hpp"
+#include "arm/chain.hpp"
+#include "inverse/closed_form.hpp"
+#include "inverse/levenberg.hpp"
+#include "number/real.hpp"
+#include "inverse/tick_valid.hpp"
 
 namespace mdhcal {
 

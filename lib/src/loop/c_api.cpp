@@ -8,7 +8,7 @@
 #include "mdhcal/environment.hpp"
 #include "mdhcal/self_test.hpp"
 #include "mdhcal/solutions.hpp"
-#include "real.hpp"
+#include "number/real.hpp"
 
 #define MDHCAL_JOIN_(a, b) a##b
 #define MDHCAL_JOIN(a, b) MDHCAL_JOIN_(a, b)

@@ -3,8 +3,8 @@
 #pragma once
 
 #include "mdhcal/geometry.hpp"
-#include "real.hpp"
-#include "rotation.hpp"
+#include "number/real.hpp"
+#include "arm/rotation.hpp"
 
 namespace mdhcal {
 namespace {

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include "mdhcal/inverse.hpp"
 
-#include "real.hpp"
+#include "number/real.hpp"
 // The tick's parts see Real.
-#include "constrained_tick.hpp"
-#include "tick_valid.hpp"
-#include "within.hpp"
+#include "inverse/constrained_tick.hpp"
+#include "inverse/tick_valid.hpp"
+#include "number/compare.hpp"
 
 namespace mdhcal {
 

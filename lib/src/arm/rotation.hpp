@@ -3,30 +3,10 @@
 #pragma once
 
 #include "mdhcal/arm.hpp"
-#include "real.hpp"
-#include "square_root.hpp"
+#include "number/compare.hpp"
+#include "number/real.hpp"
 
 namespace mdhcal {
-
-static inline Real square_root(Real x) {
-  if constexpr (sizeof(Real) == sizeof(double)) {
-#if defined(__arm__) && (!defined(__ARM_FP) || (__ARM_FP & 8) == 0)
-    return static_cast<Real>(integer_square_root(static_cast<double>(x)));
-#else
-    return static_cast<Real>(__builtin_sqrt(static_cast<double>(x)));
-#endif
-  } else {
-    return static_cast<Real>(__builtin_sqrtf(static_cast<float>(x)));
-  }
-}
-
-static inline Real magnitude(Real x) {
-  if constexpr (sizeof(Real) == sizeof(double)) {
-    return static_cast<Real>(__builtin_fabs(static_cast<double>(x)));
-  } else {
-    return static_cast<Real>(__builtin_fabsf(static_cast<float>(x)));
-  }
-}
 
 /// a_T_c = a_T_b b_T_c, into a place apart from both.
 static inline void multiply(const Frame<Real>& a, const Frame<Real>& b, Frame<Real>& c) {

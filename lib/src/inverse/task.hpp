@@ -2,8 +2,8 @@
 // Private to lib/src; include after real.hpp. The part of a pose that a task asks for, and its Jacobian.
 #pragma once
 
-#include "box_least_squares.hpp"
-#include "tick.hpp"
+#include "inverse/box_least_squares.hpp"
+#include "inverse/tick.hpp"
 
 namespace mdhcal {
 namespace {

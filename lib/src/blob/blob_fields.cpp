@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "blob_fields.hpp"
+#include "blob/blob_fields.hpp"
 
 #include <cstring>
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "mdhcal/blob.hpp"
 
-#include "blob_fields.hpp"
+#include "blob/blob_fields.hpp"
 #include "mdhcal/arm.hpp"
 #include "mdhcal/crc32.hpp"
 

@@ -2,7 +2,7 @@
 // Private to lib/src. The blob's fields, read and judged one by one, and the model made of them.
 #pragma once
 
-#include "little_endian.hpp"
+#include "blob/little_endian.hpp"
 #include "mdhcal/blob.hpp"
 
 namespace mdhcal {

@@ -3,8 +3,8 @@
 // matter, which minimisations (search.hpp) it takes, and what is claimed of their result.
 #pragma once
 
-#include "regular_tick.hpp"
-#include "search.hpp"
+#include "inverse/regular_tick.hpp"
+#include "inverse/search.hpp"
 
 namespace mdhcal {
 namespace {

@@ -2,7 +2,7 @@
 // Private to lib/src; include after real.hpp. From starting joints, which may be far, to joints that meet a pose.
 #pragma once
 
-#include "task.hpp"
+#include "inverse/task.hpp"
 
 namespace mdhcal {
 namespace {
