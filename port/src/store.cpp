@@ -81,6 +81,49 @@ Status write(const Content& content) {
   return status == Status::ok ? content.verify(0) : status;
 }
 
+// Whether every byte of a slot's header and blob can be read, whatever they are.
+bool readable(const Flash& flash, std::uint32_t slot) {
+  std::uint8_t granule[max_granule_bytes];
+  const std::uint32_t base = slot * slot_bytes(flash.geometry);
+  for (std::uint32_t offset = 0; offset < content_bytes; offset += flash.geometry.granule_bytes) {
+    if (flash.read(flash.context, base + offset, granule, flash.geometry.granule_bytes) != Status::ok) return false;
+  }
+  return true;
+}
+
+// Where an update goes: the slot that is erased for it, and its sequence.
+struct Plan {
+  std::uint32_t slot;
+  std::uint32_t sequence;
+};
+
+// A slot may be erased if the other one is active, or if it has been read whole and refused. A slot that could not be read
+// may hold the newest blob, so it is neither erased nor outnumbered on a guess.
+Status make_plan(const Flash& flash, const StoreState& state, Plan& plan) {
+  SlotHeader header[2] = {};
+  Status found[2];
+  for (std::uint32_t slot = 0; slot < 2; ++slot) found[slot] = read_header(flash, slot, header[slot]);
+  if (state.active >= 0) {
+    const auto kept = static_cast<std::uint32_t>(state.active);
+    plan.slot = 1 - kept;
+    if (found[kept] == Status::flash_read) return Status::store_unreadable;
+    // Cells that were cut in the middle of programming cannot be read until they are erased: that goes on. A slot that can be
+    // read by now would have been the one to load.
+    const bool unread = state.slot[plan.slot] == Status::flash_read || found[plan.slot] == Status::flash_read;
+    if (unread && readable(flash, plan.slot)) return Status::store_unreadable;
+    plan.sequence = (found[kept] == Status::ok ? header[kept].sequence : state.sequence) + 1U;
+    return Status::ok;
+  }
+  if (found[0] == Status::flash_read || found[1] == Status::flash_read) return Status::store_unreadable;
+  // The newer of the two is kept all the same: it may have been refused for a passing reason.
+  const bool both = found[0] == Status::ok && found[1] == Status::ok;
+  const std::uint32_t newest = found[1] == Status::ok && (!both || newer(header[1].sequence, header[0].sequence)) ? 1 : 0;
+  plan.slot = state.slot[1 - newest] != Status::flash_read ? 1 - newest : newest;
+  if (state.slot[plan.slot] == Status::flash_read) return Status::store_unreadable;
+  plan.sequence = (found[newest] == Status::ok ? header[newest].sequence : 0U) + 1U;
+  return Status::ok;
+}
+
 }  // namespace
 
 std::uint32_t slot_bytes(const FlashGeometry& geometry) noexcept {
@@ -113,7 +156,9 @@ Status load_newest(const Flash& flash, const Loader& loader, std::uint8_t (&blob
     }
   }
   state = found;
-  return found.active < 0 ? Status::store_empty : Status::ok;
+  if (found.active >= 0) return Status::ok;
+  const bool unread = found.slot[0] == Status::flash_read || found.slot[1] == Status::flash_read;
+  return unread ? Status::store_unreadable : Status::store_empty;
 }
 
 Status update(const Flash& flash, const Loader& loader, const std::uint8_t* blob, std::size_t size,
@@ -125,27 +170,35 @@ Status update(const Flash& flash, const Loader& loader, const std::uint8_t* blob
   const Status accepted = loader.load(blob, size, loader.context);
   if (accepted != Status::ok) return accepted;
 
-  // Without an active slot the newer of the two is kept all the same: it may have been refused for a passing reason.
-  SlotHeader header[2] = {};
-  bool has_header[2];
-  for (std::uint32_t slot = 0; slot < 2; ++slot) has_header[slot] = read_header(flash, slot, header[slot]) == Status::ok;
-  std::uint32_t kept = has_header[1] && (!has_header[0] || newer(header[1].sequence, header[0].sequence)) ? 1 : 0;
-  if (state.active >= 0) kept = static_cast<std::uint32_t>(state.active);
-  const std::uint32_t slot = 1 - kept;
-  std::uint32_t sequence = has_header[kept] ? header[kept].sequence : state.sequence;
-  ++sequence;
+  Plan plan = {};
+  const Status planned = make_plan(flash, state, plan);
+  if (planned != Status::ok) return planned;
 
   std::uint8_t bytes[slot_header_size];
-  encode_slot_header({sequence, crc_field(blob)}, bytes);
-  const std::uint32_t base = slot * slot_bytes(flash.geometry);
-  state.slot[slot] = write({flash, base, bytes, blob});
-  if (state.slot[slot] != Status::ok) {
+  encode_slot_header({plan.sequence, crc_field(blob)}, bytes);
+  const std::uint32_t base = plan.slot * slot_bytes(flash.geometry);
+  const Status written = write({flash, base, bytes, blob});
+  if (written != Status::ok) {
     // An update that was reported as failed must not come to life at the next start.
-    static_cast<void>(flash.erase(flash.context, base));
-    return state.slot[slot];
+    const Status erased = flash.erase(flash.context, base);
+    state.slot[plan.slot] = erased == Status::ok ? Status::blob_magic : erased;
+    return written;
   }
-  state.active = static_cast<std::int32_t>(slot);
-  state.sequence = sequence;
+  state.slot[plan.slot] = Status::ok;
+  state.active = static_cast<std::int32_t>(plan.slot);
+  state.sequence = plan.sequence;
+  return Status::ok;
+}
+
+Status erase_store(const Flash& flash, StoreState& state) noexcept {
+  const std::uint32_t slot_size = slot_bytes(flash.geometry);
+  if (slot_size == 0) return Status::flash_geometry;
+  // The first sector of a slot holds its header: without it the slot is none.
+  for (std::uint32_t slot = 0; slot < 2; ++slot) {
+    const Status status = flash.erase(flash.context, slot * slot_size);
+    if (status != Status::ok) return status;
+  }
+  state = {1, -1, 0, {Status::blob_magic, Status::blob_magic}};
   return Status::ok;
 }
 

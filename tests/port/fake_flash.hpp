@@ -48,12 +48,19 @@ class FakeFlash {
   /// Lets one operation fail, power on: it is not done and says so.
   void fail_at(int operation) { failing_operation = operation; }
 
+  /// Lets the reads fail that are among the operations `from` to `until` - 1 and touch a byte of [begin, end), power on.
+  void fail_reads(int from, int until, std::uint32_t begin = 0, std::uint32_t end = 0xFFFFFFFFU) {
+    deaf = {from, until, begin, end};
+  }
+
   void power_up() {
     operations = 0;
     cut_operation = -1;
     failing_operation = -1;
+    deaf = {0, 0, 0, 0};
     powered = true;
     cut_met_a_read = false;
+    failed_reads = 0;
   }
 
   Flash flash;
@@ -62,6 +69,7 @@ class FakeFlash {
   int violations = 0;
   bool powered = true;
   bool cut_met_a_read = false;
+  int failed_reads = 0;  ///< by fail_reads()
   bool readable = true;  ///< false: every read fails, like a part that has gone
 
  private:
@@ -108,9 +116,12 @@ class FakeFlash {
 
   static Status read(void* context, std::uint32_t address, std::uint8_t* to, std::uint32_t size) {
     FakeFlash& fake = self(context);
+    const bool deaf = fake.operations >= fake.deaf.from && fake.operations < fake.deaf.until &&
+                      address < fake.deaf.end && address + size > fake.deaf.begin;
     const Course course = fake.begin();
     if (course == Course::torn) fake.cut_met_a_read = true;
-    if (course != Course::whole || !fake.readable) return Status::flash_read;
+    if (deaf) ++fake.failed_reads;
+    if (course != Course::whole || deaf || !fake.readable) return Status::flash_read;
     if (!fake.inside(address, size)) {
       ++fake.violations;
       return Status::flash_read;
@@ -163,6 +174,10 @@ class FakeFlash {
   std::vector<Granule> granules;
   int cut_operation = -1;
   int failing_operation = -1;
+  struct {
+    int from, until;
+    std::uint32_t begin, end;
+  } deaf = {0, 0, 0, 0};
   Torn cut_mode = Torn::untouched;
   std::uint32_t seed = 2463534242U;
 };

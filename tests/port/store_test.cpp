@@ -27,6 +27,7 @@ TEST(Store, RefusesAGeometryThatItCannotUse) {
     fake.flash.geometry = geometry;
     TestStore store(fake);
     EXPECT_EQ(store.start(), Status::flash_geometry);
+    EXPECT_EQ(erase_store(fake.flash, store.state), Status::flash_geometry);
     EXPECT_EQ(store.state.examined, 0);
     store.state = {1, -1, 0, {Status::ok, Status::ok}};
     EXPECT_EQ(store.put(blob_of(1)), Status::flash_geometry);
@@ -128,12 +129,12 @@ TEST(Store, AHeaderOfAnotherBlobIsRefused) {
   EXPECT_EQ(store.loader.asked, 0);
 }
 
-TEST(Store, AFlashThatCannotBeReadIsEmptyAndSaysWhy) {
+TEST(Store, AFlashThatCannotBeReadIsNotCalledEmpty) {
   FakeFlash fake(h7);
   ASSERT_EQ(flash_factory(fake, 0, 1, blob_of(1)), Status::ok);
   fake.readable = false;
   TestStore store(fake);
-  EXPECT_EQ(store.start(), Status::store_empty);
+  EXPECT_EQ(store.start(), Status::store_unreadable);
   EXPECT_EQ(store.state.slot[0], Status::flash_read);
   EXPECT_EQ(store.state.slot[1], Status::flash_read);
 }

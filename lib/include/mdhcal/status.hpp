@@ -42,6 +42,7 @@ enum class [[nodiscard]] Status : std::int32_t {
   flash_verify = 51,    ///< What was read back is not what was written.
   flash_geometry = 52,  ///< The driver states a geometry that the store cannot use.
   store_empty = 53,     ///< No slot holds a blob that the loader accepts.
+  store_unreadable = 54, ///< A slot that may hold a good blob cannot be read: nothing was erased or numbered anew.
 };
 
 /// The status in words: a string of static storage, never null, one line, no full stop.

@@ -33,6 +33,7 @@ const char* text(Status status) noexcept {
     case Status::flash_verify: return "flash read-back differs";
     case Status::flash_geometry: return "unusable flash geometry";
     case Status::store_empty: return "no acceptable blob stored";
+    case Status::store_unreadable: return "a slot of the store cannot be read";
   }
   return "unknown status";
 }
