@@ -6,10 +6,12 @@
 set -euo pipefail
 list="$(dirname "$0")/packages.txt"
 
+# In two steps: the status of a command inside <( ) is lost.
+listed="$(grep -v -e '^#' -e '^$' "$list")" || { echo "$list names no package; expected those that the build needs." >&2; exit 1; }
 wanted=()
 while read -r package group _; do
   if [[ -z "$group" || " $* " == *" $group "* ]]; then wanted+=("$package"); fi
-done < <(grep -v -e '^#' -e '^$' "$list")
+done <<<"$listed"
 
 if ! command -v dpkg-query >/dev/null || ! command -v apt-get >/dev/null; then
   # The C++ libraries come by CMake's FetchContent; programs cannot.
