@@ -6,10 +6,10 @@
 #include <cmath>
 #include <thread>
 
-#include "offline/identify/statistics.hpp"
+#include "offline/base/random.hpp"
+#include "offline/base/statistics.hpp"
 #include "offline/identify/reduction.hpp"
 #include "offline/identify/tikhonov.hpp"
-#include "offline/simulate/random.hpp"
 
 namespace mdhcal::offline {
 

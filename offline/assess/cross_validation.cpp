@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <numeric>
 
-#include "offline/identify/rigid.hpp"
-#include "offline/simulate/random.hpp"
+#include "offline/base/random.hpp"
+#include "offline/robot/vectors.hpp"
 
 namespace mdhcal::offline {
 

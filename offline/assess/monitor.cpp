@@ -6,11 +6,11 @@
 #include <cstdio>
 #include <numbers>
 
-#include "offline/assess/distributions.hpp"
+#include "offline/base/distributions.hpp"
 #include "offline/identify/registration.hpp"
-#include "offline/identify/rigid.hpp"
 #include "offline/robot/rotation.hpp"
 #include "offline/robot/units.hpp"
+#include "offline/robot/vectors.hpp"
 
 namespace mdhcal::offline {
 

@@ -2,10 +2,10 @@
 #include <filesystem>
 #include <set>
 
+#include "offline/base/error.hpp"
+#include "offline/base/read_file.hpp"
 #include "offline/batch/batch.hpp"
-#include "offline/error.hpp"
 #include "offline/measure/columns.hpp"
-#include "offline/read_file.hpp"
 
 namespace mdhcal::offline {
 

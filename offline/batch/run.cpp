@@ -3,9 +3,9 @@
 #include <filesystem>
 #include <thread>
 
+#include "offline/base/error.hpp"
+#include "offline/base/folder.hpp"
 #include "offline/batch/batch.hpp"
-#include "offline/error.hpp"
-#include "offline/output/folder.hpp"
 #include "offline/output/result_files.hpp"
 #include "offline/report/write_result.hpp"
 

@@ -4,9 +4,9 @@
 
 #include <nlohmann/json.hpp>
 
+#include "offline/base/read_file.hpp"
 #include "offline/batch/batch.hpp"
 #include "offline/measure/joint_file.hpp"
-#include "offline/read_file.hpp"
 #include "offline/report/html.hpp"
 
 namespace mdhcal::offline {

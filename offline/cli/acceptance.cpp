@@ -5,9 +5,9 @@
 #include <cstdio>
 
 #include "offline/assess/iso9283.hpp"
-#include "offline/identify/statistics.hpp"
+#include "offline/base/error.hpp"
+#include "offline/base/statistics.hpp"
 #include "offline/cli/blob_command.hpp"
-#include "offline/error.hpp"
 #include "offline/output/blob_file.hpp"
 
 namespace mdhcal::offline {

@@ -9,14 +9,14 @@
 
 #include <nlohmann/json.hpp>
 
+#include "offline/base/error.hpp"
+#include "offline/base/folder.hpp"
+#include "offline/base/progress.hpp"
 #include "offline/batch/batch.hpp"
 #include "offline/cli/calibration_arguments.hpp"
 #include "offline/cli/commands.hpp"
 #include "offline/cli/messages.hpp"
-#include "offline/cli/progress.hpp"
-#include "offline/error.hpp"
 #include "offline/output/blob_writer.hpp"
-#include "offline/output/folder.hpp"
 
 namespace mdhcal::offline {
 

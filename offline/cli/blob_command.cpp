@@ -3,8 +3,8 @@
 
 #include <algorithm>
 
+#include "offline/base/error.hpp"
 #include "offline/cli/messages.hpp"
-#include "offline/error.hpp"
 #include "offline/output/blob_file.hpp"
 #include "offline/robot/rotation.hpp"
 

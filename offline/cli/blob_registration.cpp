@@ -4,11 +4,11 @@
 #include <algorithm>
 #include <numeric>
 
+#include "offline/base/error.hpp"
+#include "offline/base/progress.hpp"
 #include "offline/cli/blob_command.hpp"
 #include "offline/cli/messages.hpp"
-#include "offline/cli/progress.hpp"
-#include "offline/error.hpp"
-#include "offline/identify/setup.hpp"
+#include "offline/identify/unknowns.hpp"
 #include "offline/robot/rotation.hpp"
 
 namespace mdhcal::offline {
@@ -56,14 +56,14 @@ Registration registration(const Robot& stated, const Dataset& data, bool refit_b
   robot.targets.clear();
   for (std::size_t k = 0; k < r.flange_p_m.size(); ++k) robot.targets.push_back({data.targets[k], r.flange_p_m[k]});
   std::copy(std::begin(robot.geometry.link), std::end(robot.geometry.link), robot.nominal.begin());
-  SetupOptions options;
+  UnknownsOptions options;
   options.fit_base = refit_base;
   options.fit_tool = refit_tool;
   Selection selection;
   selection.rows.resize(data.rows.size());
   std::iota(selection.rows.begin(), selection.rows.end(), std::size_t{0});
-  const Setup setup = make_setup(robot, data, selection.rows, options);
-  const Fit fitted = fit_frames(setup, data, selection, options.noise_mm);
+  const Unknowns unknowns = choose_unknowns(robot, data, selection.rows, options);
+  const Fit fitted = fit_frames(unknowns, data, selection, options.noise_mm);
   return {fitted.estimate.tracker_T_base, fitted.estimate.flange_p_m};
 }
 

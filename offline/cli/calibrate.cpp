@@ -3,12 +3,12 @@
 #include <memory>
 #include <optional>
 
+#include "offline/base/folder.hpp"
+#include "offline/base/progress.hpp"
+#include "offline/base/text_table.hpp"
 #include "offline/cli/calibration_arguments.hpp"
 #include "offline/cli/messages.hpp"
-#include "offline/cli/progress.hpp"
-#include "offline/output/folder.hpp"
 #include "offline/output/result_files.hpp"
-#include "offline/output/text_table.hpp"
 #include "offline/report/write_result.hpp"
 
 namespace mdhcal::offline {

@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "offline/error.hpp"
+#include "offline/base/error.hpp"
 #include "offline/robot/units.hpp"
 
 namespace mdhcal::offline {

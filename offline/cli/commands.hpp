@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // One function a command; each lives in the file of its name and registers itself with the program. A command throws
-// InputError or Refusal (offline/error.hpp), which main() turns into exit status 2 or 1, says things through
+// InputError or Refusal (offline/base/error.hpp), which main() turns into exit status 2 or 1, says things through
 // messages.hpp, prints data on stdout, and ends its help with an example: command->footer("Example:\n  mdhcal ...").
 #pragma once
 

@@ -7,14 +7,14 @@
 
 #include <nlohmann/json.hpp>
 
+#include "offline/base/error.hpp"
+#include "offline/base/folder.hpp"
+#include "offline/base/progress.hpp"
 #include "offline/cli/calibration_arguments.hpp"
 #include "offline/cli/messages.hpp"
-#include "offline/cli/progress.hpp"
 #include "offline/cli/published.hpp"
-#include "offline/error.hpp"
-#include "offline/identify/rigid.hpp"
-#include "offline/output/folder.hpp"
 #include "offline/report/write_result.hpp"
+#include "offline/robot/vectors.hpp"
 
 namespace mdhcal::offline {
 

@@ -2,10 +2,10 @@
 #include <filesystem>
 #include <memory>
 
+#include "offline/base/error.hpp"
+#include "offline/base/folder.hpp"
+#include "offline/base/read_file.hpp"
 #include "offline/cli/commands.hpp"
-#include "offline/error.hpp"
-#include "offline/output/folder.hpp"
-#include "offline/read_file.hpp"
 #include "offline/robot/ur_factory.hpp"
 #include "offline/robot/urdf.hpp"
 

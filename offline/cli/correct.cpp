@@ -3,10 +3,10 @@
 #include <cstdio>
 #include <memory>
 
+#include "offline/base/error.hpp"
 #include "offline/cli/blob_command.hpp"
 #include "offline/cli/cold_start.hpp"
 #include "offline/cli/commands.hpp"
-#include "offline/error.hpp"
 
 namespace mdhcal::offline {
 

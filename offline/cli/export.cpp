@@ -5,11 +5,11 @@
 #include <vector>
 
 #include "mdhcal/slot.hpp"
+#include "offline/base/error.hpp"
+#include "offline/base/folder.hpp"
 #include "offline/cli/commands.hpp"
-#include "offline/error.hpp"
 #include "offline/output/blob_file.hpp"
 #include "offline/output/export.hpp"
-#include "offline/output/folder.hpp"
 
 namespace mdhcal::offline {
 

@@ -2,9 +2,9 @@
 #include <cstdio>
 #include <memory>
 
+#include "offline/base/error.hpp"
 #include "offline/cli/blob_command.hpp"
 #include "offline/cli/commands.hpp"
-#include "offline/error.hpp"
 #include "offline/measure/joint_file.hpp"
 #include "offline/robot/rotation.hpp"
 #include "offline/robot/units.hpp"

@@ -6,9 +6,9 @@
 #include <memory>
 #include <unistd.h>
 
+#include "offline/base/error.hpp"
+#include "offline/base/folder.hpp"
 #include "offline/cli/commands.hpp"
-#include "offline/error.hpp"
-#include "offline/output/folder.hpp"
 #include "offline/output/sign.hpp"
 
 namespace mdhcal::offline {

@@ -2,10 +2,10 @@
 #include <cstdio>
 #include <new>
 
+#include "offline/base/error.hpp"
 #include "offline/cli/commands.hpp"
 #include "offline/cli/completion.hpp"
 #include "offline/cli/messages.hpp"
-#include "offline/error.hpp"
 
 namespace {
 

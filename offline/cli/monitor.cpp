@@ -6,11 +6,11 @@
 #include <nlohmann/json.hpp>
 
 #include "offline/assess/monitor.hpp"
+#include "offline/base/error.hpp"
 #include "offline/cli/blob_command.hpp"
 #include "offline/cli/blob_registration.hpp"
 #include "offline/cli/commands.hpp"
 #include "offline/cli/messages.hpp"
-#include "offline/error.hpp"
 #include "offline/output/blob_file.hpp"
 
 namespace mdhcal::offline {

@@ -2,9 +2,9 @@
 #include <memory>
 #include <optional>
 
+#include "offline/base/folder.hpp"
 #include "offline/cli/commands.hpp"
 #include "offline/output/blob_writer.hpp"
-#include "offline/output/folder.hpp"
 
 namespace mdhcal::offline {
 

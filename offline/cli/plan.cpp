@@ -6,12 +6,12 @@
 
 #include <nlohmann/json.hpp>
 
+#include "offline/base/error.hpp"
+#include "offline/base/folder.hpp"
+#include "offline/base/progress.hpp"
 #include "offline/cli/commands.hpp"
 #include "offline/cli/messages.hpp"
-#include "offline/cli/progress.hpp"
-#include "offline/error.hpp"
 #include "offline/measure/joint_file.hpp"
-#include "offline/output/folder.hpp"
 #include "offline/plan/plan.hpp"
 #include "offline/robot/units.hpp"
 
@@ -126,10 +126,10 @@ void run_plan(PlanArguments& arguments) {
   PlanOptions& options = arguments.options;
   options.criterion = criteria().at(arguments.criterion);
   options.reach = reach_of(arguments);
-  options.setup.fit_base = arguments.base == "fit";
-  options.setup.fit_tool = arguments.tool == "fit";
+  options.unknowns.fit_base = arguments.base == "fit";
+  options.unknowns.fit_tool = arguments.tool == "fit";
   if (!(arguments.noise_mm > 0)) throw InputError("Found --noise " + std::to_string(arguments.noise_mm) + "; expected a standard deviation above 0 mm.");
-  options.setup.noise_mm = arguments.noise_mm;
+  options.unknowns.noise_mm = arguments.noise_mm;
   const Plan plan = [&] {
     Progress progress("plan", verbosity() != Verbosity::quiet);
     return make_plan(robot, options, candidates, progress.callback());

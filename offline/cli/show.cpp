@@ -3,8 +3,8 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "offline/base/error.hpp"
 #include "offline/cli/commands.hpp"
-#include "offline/error.hpp"
 #include "offline/output/blob_describe.hpp"
 #include "offline/output/sign.hpp"
 

@@ -2,9 +2,9 @@
 #include <memory>
 #include <optional>
 
+#include "offline/base/folder.hpp"
 #include "offline/cli/commands.hpp"
 #include "offline/output/blob_file.hpp"
-#include "offline/output/folder.hpp"
 #include "offline/output/sign.hpp"
 
 namespace mdhcal::offline {

@@ -4,10 +4,10 @@
 
 #include <nlohmann/json.hpp>
 
+#include "offline/base/folder.hpp"
+#include "offline/base/progress.hpp"
 #include "offline/cli/commands.hpp"
 #include "offline/cli/messages.hpp"
-#include "offline/cli/progress.hpp"
-#include "offline/output/folder.hpp"
 #include "offline/robot/units.hpp"
 #include "offline/simulate/family.hpp"
 #include "offline/simulate/measurement_text.hpp"

@@ -7,13 +7,13 @@
 
 #include <nlohmann/json.hpp>
 
-#include "offline/identify/statistics.hpp"
+#include "offline/base/error.hpp"
+#include "offline/base/statistics.hpp"
 #include "offline/cli/acceptance.hpp"
 #include "offline/cli/blob_command.hpp"
 #include "offline/cli/blob_registration.hpp"
 #include "offline/cli/commands.hpp"
 #include "offline/cli/messages.hpp"
-#include "offline/error.hpp"
 #include "offline/output/blob_file.hpp"
 
 namespace mdhcal::offline {

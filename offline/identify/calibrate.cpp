@@ -5,18 +5,18 @@
 #include <cmath>
 #include <numeric>
 
-#include "offline/error.hpp"
+#include "offline/base/error.hpp"
+#include "offline/base/random.hpp"
+#include "offline/base/sentences.hpp"
 #include "offline/identify/covariance.hpp"
 #include "offline/identify/dependence.hpp"
-#include "offline/identify/figures.hpp"
-#include "offline/identify/methods.hpp"
+#include "offline/identify/mistakes.hpp"
+#include "offline/identify/notes.hpp"
+#include "offline/identify/published_methods.hpp"
 #include "offline/identify/regularized.hpp"
-#include "offline/identify/rigid.hpp"
-#include "offline/identify/setup.hpp"
 #include "offline/identify/spectrum.hpp"
-#include "offline/identify/suspicion.hpp"
-#include "offline/identify/words.hpp"
-#include "offline/simulate/random.hpp"
+#include "offline/identify/unknowns.hpp"
+#include "offline/robot/vectors.hpp"
 
 namespace mdhcal::offline {
 
@@ -161,25 +161,25 @@ Calibration calibrate(const Robot& robot, const Dataset& given, const Calibratio
     out.testing = aligned(options.commanded_joints ? with_commanded(*test) : *test, data);
   }
 
-  SetupOptions setup_options;
-  setup_options.fit_base = options.fit_base;
-  setup_options.fit_tool = options.fit_tool;
-  setup_options.parameters = options.parameters;
-  setup_options.noise_mm = options.noise_mm.value_or(0.02);
-  const double noise_mm = setup_options.noise_mm;
+  UnknownsOptions unknowns_options;
+  unknowns_options.fit_base = options.fit_base;
+  unknowns_options.fit_tool = options.fit_tool;
+  unknowns_options.parameters = options.parameters;
+  unknowns_options.noise_mm = options.noise_mm.value_or(0.02);
+  const double noise_mm = unknowns_options.noise_mm;
   out.noise_mm = noise_mm;
-  const Setup setup = make_setup(robot, data, out.training_rows, setup_options);
-  out.layout = setup.layout;
-  out.decisions = setup.parameters.decisions;
-  check_poses(robot, data, out.training_rows, setup);
+  const Unknowns unknowns = choose_unknowns(robot, data, out.training_rows, unknowns_options);
+  out.layout = unknowns.layout;
+  out.decisions = unknowns.parameters.decisions;
+  check_poses(robot, data, out.training_rows, unknowns);
 
   Selection selection;
   selection.rows = out.training_rows;
-  const Fit nominal = fit_frames(setup, data, selection, noise_mm);
+  const Fit nominal = fit_frames(unknowns, data, selection, noise_mm);
   out.start = nominal.estimate;
   const bool any_sigma = states_sigma(data);
   if (any_sigma) out.residual_unit_mm = mean_sigma_mm(data, out.training_rows, noise_mm);
-  check_simple_mistakes(robot, data, out.training_rows, setup_options, nominal.scale * out.residual_unit_mm);
+  check_simple_mistakes(robot, data, out.training_rows, unknowns_options, nominal.scale * out.residual_unit_mm);
 
   RegularizedFit regularized;
   const bool penalised = options.method == "rpim" || options.method == "rpim-train";
@@ -192,7 +192,7 @@ Calibration calibrate(const Robot& robot, const Dataset& given, const Calibratio
     control.seed = options.seed;
     if (any_sigma) control.sigma = 1.0;
     else if (options.noise_mm) control.sigma = noise_mm;
-    regularized = regularized_fit(data, selection, setup.layout, out.start, control);
+    regularized = regularized_fit(data, selection, unknowns.layout, out.start, control);
     out.converged = regularized.fit.converged;
     out.iterations = regularized.fit.iterations;
     out.lambda.rule = regularized.choice.rule;
@@ -207,7 +207,7 @@ Calibration calibrate(const Robot& robot, const Dataset& given, const Calibratio
     Selection plain = selection;
     plain.robust_weight.clear();
     const MethodOutcome outcome =
-        run_method(options.method, data, plain, setup.layout, out.start, noise_mm);
+        run_method(options.method, data, plain, unknowns.layout, out.start, noise_mm);
     out.converged = outcome.converged;
     out.iterations = outcome.iterations;
     if (!outcome.note.empty()) out.notes.push_back(outcome.note);
@@ -226,7 +226,7 @@ Calibration calibrate(const Robot& robot, const Dataset& given, const Calibratio
   std::size_t rejected = 0;
   for (double e : regularized.fit.error_norms) rejected += e > outlier_threshold * scale ? 1 : 0;
   if (penalised && options.robust) {
-    if (const auto move = find_tracker_move(data, out.training_rows, setup, regularized.fit, noise_mm)) {
+    if (const auto move = find_tracker_move(data, out.training_rows, unknowns, regularized.fit, noise_mm)) {
       throw Refusal("The tracker, or the robot's foot, seems to have moved before row " +
                     row_name(data, data.rows[move->first_row_after]) + " (line " +
                     std::to_string(data.rows[move->first_row_after].line) + "): the rows from there on lie in a frame " +
@@ -244,20 +244,20 @@ Calibration calibrate(const Robot& robot, const Dataset& given, const Calibratio
 
   // Everything that is said about the result comes from one more linearisation, at the result.
   const MeasurementModel model(out.estimate);
-  Triangle whole = sum_of(linearise(model, data, selection, setup.layout, noise_mm));
-  const ReducedSystem system = reduce_frames(whole.matrix(), setup.layout.frame_columns(), whole.row_count());
-  const std::vector<double> x = deviation(out.estimate, setup.layout);
+  Triangle whole = sum_of(linearise(model, data, selection, unknowns.layout, noise_mm));
+  const ReducedSystem system = reduce_frames(whole.matrix(), unknowns.layout.frame_columns(), whole.row_count());
+  const std::vector<double> x = deviation(out.estimate, unknowns.layout);
   const SpectralProblem problem =
       penalised_problem(system, Eigen::Map<const Eigen::VectorXd>(x.data(), static_cast<Eigen::Index>(x.size())));
-  Triangle nominal_whole = sum_of(linearise(MeasurementModel(out.start), data, selection, setup.layout, noise_mm));
-  out.identifiability = identifiability(system, problem, setup.layout, model, out.lambda.lambda, options.seed);
+  Triangle nominal_whole = sum_of(linearise(MeasurementModel(out.start), data, selection, unknowns.layout, noise_mm));
+  out.identifiability = identifiability(system, problem, unknowns.layout, model, out.lambda.lambda, options.seed);
   out.identifiability.before = spectrum_of(
-      reduce_frames(nominal_whole.matrix(), setup.layout.frame_columns(), nominal_whole.row_count()));
-  out.covariance = covariance_of(data, selection, setup.layout, system, problem, regularized.fit, out.lambda.lambda,
+      reduce_frames(nominal_whole.matrix(), unknowns.layout.frame_columns(), nominal_whole.row_count()));
+  out.covariance = covariance_of(data, selection, unknowns.layout, system, problem, regularized.fit, out.lambda.lambda,
                                  independent_share(data, selection, model), noise_mm);
-  const std::size_t frames = setup.layout.frame_columns();
-  for (std::size_t i = 0; i < setup.layout.geometry.size(); ++i) {
-    const Parameter& parameter = setup.layout.geometry[i];
+  const std::size_t frames = unknowns.layout.frame_columns();
+  for (std::size_t i = 0; i < unknowns.layout.geometry.size(); ++i) {
+    const Parameter& parameter = unknowns.layout.geometry[i];
     EstimatedParameter p;
     p.id = parameter.id;
     p.nominal = parameter.nominal;

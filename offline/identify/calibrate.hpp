@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "offline/identify/statistics.hpp"
+#include "offline/base/statistics.hpp"
 #include "offline/identify/identifiability.hpp"
 #include "offline/identify/model.hpp"
 #include "offline/identify/uncertainty.hpp"

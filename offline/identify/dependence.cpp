@@ -7,11 +7,11 @@
 #include <cmath>
 #include <functional>
 
-#include "offline/assess/distributions.hpp"
+#include "offline/base/distributions.hpp"
+#include "offline/base/sentences.hpp"
 #include "offline/identify/folds.hpp"
-#include "offline/identify/rigid.hpp"
-#include "offline/identify/words.hpp"
 #include "offline/robot/units.hpp"
+#include "offline/robot/vectors.hpp"
 
 namespace mdhcal::offline {
 

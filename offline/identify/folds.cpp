@@ -6,9 +6,9 @@
 #include <numeric>
 #include <utility>
 
-#include "offline/error.hpp"
+#include "offline/base/error.hpp"
+#include "offline/base/random.hpp"
 #include "offline/identify/robust.hpp"
-#include "offline/simulate/random.hpp"
 
 namespace mdhcal::offline {
 

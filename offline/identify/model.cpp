@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "mdhcal/kinematics.hpp"
-#include "offline/error.hpp"
-#include "offline/identify/rigid.hpp"
+#include "offline/base/error.hpp"
+#include "offline/robot/vectors.hpp"
 
 namespace mdhcal::offline {
 

@@ -9,7 +9,7 @@
 
 #include "mdhcal/kinematics.hpp"
 #include "offline/identify/factorization.hpp"
-#include "offline/identify/rigid.hpp"
+#include "offline/robot/vectors.hpp"
 
 namespace mdhcal::offline {
 

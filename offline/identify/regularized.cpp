@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "offline/error.hpp"
+#include "offline/base/error.hpp"
 
 namespace mdhcal::offline {
 

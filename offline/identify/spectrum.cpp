@@ -6,9 +6,9 @@
 #include <cstdio>
 #include <numeric>
 
+#include "offline/base/random.hpp"
 #include "offline/identify/factorization.hpp"
 #include "offline/robot/units.hpp"
-#include "offline/simulate/random.hpp"
 
 namespace mdhcal::offline {
 

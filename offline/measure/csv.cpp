@@ -6,7 +6,7 @@
 #include <charconv>
 #include <cmath>
 
-#include "offline/error.hpp"
+#include "offline/base/error.hpp"
 
 namespace mdhcal::offline {
 

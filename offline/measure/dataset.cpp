@@ -5,11 +5,11 @@
 #include <optional>
 #include <unordered_map>
 
-#include "offline/error.hpp"
+#include "offline/base/error.hpp"
+#include "offline/base/read_file.hpp"
 #include "offline/measure/columns.hpp"
 #include "offline/measure/digest.hpp"
 #include "offline/measure/rotation_columns.hpp"
-#include "offline/read_file.hpp"
 
 namespace mdhcal::offline {
 

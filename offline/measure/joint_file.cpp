@@ -3,10 +3,10 @@
 
 #include <charconv>
 
-#include "offline/error.hpp"
+#include "offline/base/error.hpp"
+#include "offline/base/read_file.hpp"
 #include "offline/measure/columns.hpp"
 #include "offline/measure/rotation_columns.hpp"
-#include "offline/read_file.hpp"
 #include "offline/robot/rotation.hpp"
 
 namespace mdhcal::offline {

@@ -5,7 +5,7 @@
 #include <cstdlib>
 #include <cstring>
 
-#include "offline/error.hpp"
+#include "offline/base/error.hpp"
 #include "offline/output/blob_writer.hpp"
 
 namespace mdhcal::offline {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include <nlohmann/json.hpp>
 
+#include "offline/base/text_table.hpp"
 #include "offline/output/blob_describe.hpp"
-#include "offline/output/text_table.hpp"
 
 namespace mdhcal::offline {
 

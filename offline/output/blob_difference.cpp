@@ -8,9 +8,9 @@
 
 #include "mdhcal/arm.hpp"
 #include "mdhcal/kinematics.hpp"
-#include "offline/error.hpp"
+#include "offline/base/error.hpp"
+#include "offline/base/text_table.hpp"
 #include "offline/output/blob_describe.hpp"
-#include "offline/output/text_table.hpp"
 #include "offline/robot/units.hpp"
 
 namespace mdhcal::offline {

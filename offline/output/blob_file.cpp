@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cstring>
 
-#include "offline/error.hpp"
-#include "offline/read_file.hpp"
+#include "offline/base/error.hpp"
+#include "offline/base/read_file.hpp"
 
 namespace mdhcal::offline {
 

@@ -6,7 +6,7 @@
 #include <cstring>
 
 #include "mdhcal/arm.hpp"
-#include "offline/error.hpp"
+#include "offline/base/error.hpp"
 #include "offline/output/posture_family.hpp"
 #include "offline/output/self_test_vectors.hpp"
 

@@ -6,7 +6,7 @@
 #include <cctype>
 #include <vector>
 
-#include "offline/error.hpp"
+#include "offline/base/error.hpp"
 
 namespace mdhcal::offline {
 

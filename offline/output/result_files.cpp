@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cstdio>
 
-#include "offline/identify/words.hpp"
+#include "offline/base/sentences.hpp"
 
 namespace mdhcal::offline {
 

@@ -11,7 +11,7 @@
 #include "mdhcal/inverse.hpp"
 #include "mdhcal/kinematics.hpp"
 #include "mdhcal/self_test.hpp"
-#include "offline/error.hpp"
+#include "offline/base/error.hpp"
 #include "offline/robot/robot.hpp"
 
 namespace mdhcal::offline {

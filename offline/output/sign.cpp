@@ -6,8 +6,8 @@
 #include <stdexcept>
 
 #include "mdhcal/crc32.hpp"
-#include "offline/error.hpp"
-#include "offline/read_file.hpp"
+#include "offline/base/error.hpp"
+#include "offline/base/read_file.hpp"
 
 namespace mdhcal::offline {
 

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numeric>
 
-#include "offline/error.hpp"
+#include "offline/base/error.hpp"
 #include "offline/simulate/simulate.hpp"
 
 namespace mdhcal::offline {
@@ -103,14 +103,14 @@ ExpectedPosition median_of_random_sets(const Experiment& experiment, std::size_t
 
 }  // namespace
 
-Experiment experiment_of(const Robot& robot, const SetupOptions& options, const std::vector<Joints>& candidates) {
+Experiment experiment_of(const Robot& robot, const UnknownsOptions& options, const std::vector<Joints>& candidates) {
   const Dataset data = imagined(robot, candidates);
   std::vector<std::size_t> rows(data.rows.size());
   std::iota(rows.begin(), rows.end(), 0u);
-  const Setup setup = make_setup(robot, data, rows, options);
-  const MeasurementModel model(setup.nominal);
-  const auto columns = static_cast<Eigen::Index>(setup.layout.columns());
-  const auto frames = static_cast<Eigen::Index>(setup.layout.frame_columns());
+  const Unknowns unknowns = choose_unknowns(robot, data, rows, options);
+  const MeasurementModel model(unknowns.nominal);
+  const auto columns = static_cast<Eigen::Index>(unknowns.layout.columns());
+  const auto frames = static_cast<Eigen::Index>(unknowns.layout.frame_columns());
 
   Experiment experiment;
   experiment.rows_per_pose = 3;
@@ -119,7 +119,7 @@ Experiment experiment_of(const Robot& robot, const SetupOptions& options, const 
   std::vector<double> jacobian(max_row_residuals * static_cast<std::size_t>(columns));
   for (std::size_t i = 0; i < rows.size(); ++i) {
     double residual[max_row_residuals];
-    model.residual(data, i, setup.layout, residual, jacobian.data(), static_cast<std::size_t>(columns));
+    model.residual(data, i, unknowns.layout, residual, jacobian.data(), static_cast<std::size_t>(columns));
     for (Eigen::Index k = 0; k < 3; ++k) {
       for (Eigen::Index c = 0; c < columns; ++c) {
         experiment.targets(3 * static_cast<Eigen::Index>(i) + k, c) = jacobian[static_cast<std::size_t>(k * columns + c)];
@@ -151,7 +151,7 @@ Plan make_plan(const Robot& robot, const PlanOptions& options, const std::vector
     throw InputError(robot.path, 0, 0, std::to_string(candidates.size()) + " candidates can be measured; expected at least " +
                                            std::to_string(std::max<std::size_t>(options.count, 1)) + '.');
   }
-  Experiment experiment = experiment_of(robot, options.setup, candidates);
+  Experiment experiment = experiment_of(robot, options.unknowns, candidates);
   // Exchange ends after three or four sweeps as a rule.
   constexpr std::size_t usual_sweeps = 4;
   std::size_t done = 0;
@@ -173,7 +173,7 @@ Plan make_plan(const Robot& robot, const PlanOptions& options, const std::vector
   const Eigen::MatrixXd inverse_transposed =
       factor.transpose().triangularView<Eigen::Lower>().solve(Eigen::MatrixXd::Identity(n, n));
   const ParameterList list = choose_parameters(
-      robot, {options.setup.fit_base, options.setup.fit_tool, false}, options.setup.parameters);
+      robot, {options.unknowns.fit_base, options.unknowns.fit_tool, false}, options.unknowns.parameters);
   for (std::size_t k = 0; k < list.free.size(); ++k) {
     const Parameter& parameter = list.free[k];
     const double sd = inverse_transposed.col(experiment.of_interest + static_cast<Eigen::Index>(k)).norm();

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "offline/identify/setup.hpp"
+#include "offline/identify/unknowns.hpp"
 #include "offline/plan/design.hpp"
 #include "offline/plan/reach.hpp"
 
@@ -19,7 +19,7 @@ struct PlanOptions {
   std::size_t candidate_count = 2000;    ///< drawn if no candidates are given
   std::uint64_t seed = 1;
   Reach reach;
-  SetupOptions setup;                    ///< what will be fitted; setup.noise_mm is the tracker's
+  UnknownsOptions unknowns;                    ///< what will be fitted; unknowns.noise_mm is the tracker's
 };
 
 /// What is to be expected of one parameter.
@@ -53,6 +53,6 @@ Plan make_plan(const Robot& robot, const PlanOptions& options, const std::vector
                const std::function<void(std::size_t, std::size_t)>& progress = {});
 
 /// The experiment that measuring `candidates` on the nominal robot would be.
-Experiment experiment_of(const Robot& robot, const SetupOptions& options, const std::vector<Joints>& candidates);
+Experiment experiment_of(const Robot& robot, const UnknownsOptions& options, const std::vector<Joints>& candidates);
 
 }  // namespace mdhcal::offline

@@ -9,8 +9,8 @@
 #include "offline/identify/folds.hpp"
 #include "offline/identify/reduction.hpp"
 #include "offline/identify/regularized.hpp"
-#include "offline/identify/rigid.hpp"
 #include "offline/robot/rotation.hpp"
+#include "offline/robot/vectors.hpp"
 #include "offline/simulate/simulate.hpp"
 
 namespace mdhcal::offline {

@@ -3,8 +3,8 @@
 
 #include <string>
 
+#include "offline/base/folder.hpp"
 #include "offline/identify/calibrate.hpp"
-#include "offline/output/folder.hpp"
 #include "offline/output/result_json.hpp"
 #include "offline/report/report.hpp"
 

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "offline/error.hpp"
+#include "offline/base/error.hpp"
 #include "offline/robot/convention.hpp"
 #include "offline/robot/rotation.hpp"
 

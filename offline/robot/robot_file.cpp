@@ -4,8 +4,8 @@
 #include <initializer_list>
 #include <string_view>
 
-#include "offline/error.hpp"
-#include "offline/read_file.hpp"
+#include "offline/base/error.hpp"
+#include "offline/base/read_file.hpp"
 #include "offline/robot/convention.hpp"
 #include "offline/robot/robot.hpp"
 #include "offline/robot/rotation.hpp"

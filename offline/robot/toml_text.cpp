@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <vector>
 
-#include "offline/error.hpp"
+#include "offline/base/error.hpp"
 
 namespace mdhcal::offline {
 

@@ -10,7 +10,7 @@
 
 #include <yaml-cpp/yaml.h>
 
-#include "offline/error.hpp"
+#include "offline/base/error.hpp"
 #include "offline/robot/convention.hpp"
 #include "offline/robot/rotation.hpp"
 #include "offline/robot/units.hpp"

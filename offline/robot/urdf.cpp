@@ -11,8 +11,8 @@
 
 #include <pugixml.hpp>
 
-#include "offline/error.hpp"
-#include "offline/read_file.hpp"
+#include "offline/base/error.hpp"
+#include "offline/base/read_file.hpp"
 #include "offline/robot/rotation.hpp"
 #include "offline/robot/units.hpp"
 

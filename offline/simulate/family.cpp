@@ -2,7 +2,7 @@
 #include "offline/simulate/family.hpp"
 
 
-#include "offline/error.hpp"
+#include "offline/base/error.hpp"
 #include "offline/robot/units.hpp"
 
 namespace mdhcal::offline {

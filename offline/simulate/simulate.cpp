@@ -8,9 +8,9 @@
 #include <Eigen/Geometry>
 
 #include "mdhcal/kinematics.hpp"
-#include "offline/error.hpp"
+#include "offline/base/error.hpp"
+#include "offline/base/random.hpp"
 #include "offline/robot/units.hpp"
-#include "offline/simulate/random.hpp"
 
 namespace mdhcal::offline {
 

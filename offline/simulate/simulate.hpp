@@ -5,9 +5,9 @@
 #include <functional>
 #include <vector>
 
+#include "offline/base/random.hpp"
 #include "offline/measure/dataset.hpp"
 #include "offline/robot/robot.hpp"
-#include "offline/simulate/random.hpp"
 
 namespace mdhcal::offline {
 

@@ -14,7 +14,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include "offline/error.hpp"
+#include "offline/base/error.hpp"
 #include "offline/simulate/family.hpp"
 #include "offline/simulate/measurement_text.hpp"
 #include "offline/simulate/simulate.hpp"

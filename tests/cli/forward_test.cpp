@@ -2,11 +2,11 @@
 #include <gtest/gtest.h>
 
 #include "tests/cli/cli.hpp"
-#include "offline/simulate/random.hpp"
+#include "mdhcal/blob.hpp"
+#include "offline/base/random.hpp"
+#include "offline/robot/robot.hpp"
 #include "tests/support/shared_data.hpp"
 #include "tests/support/wide_frame.hpp"
-#include "mdhcal/blob.hpp"
-#include "offline/robot/robot.hpp"
 
 namespace {
 

@@ -12,7 +12,7 @@
 #include "mdhcal.h"
 #include "mdhcal/arm.hpp"
 #include "mdhcal/crc32.hpp"
-#include "offline/error.hpp"
+#include "offline/base/error.hpp"
 #include "offline/measure/dataset.hpp"
 #include "offline/output/blob_writer.hpp"
 #include "tests/fuzz/blob_invariants.hpp"

@@ -4,8 +4,8 @@
 
 #include <cmath>
 
-#include "offline/error.hpp"
-#include "offline/identify/rigid.hpp"
+#include "offline/base/error.hpp"
+#include "offline/robot/vectors.hpp"
 #include "offline/simulate/family.hpp"
 #include "tests/identify/simulated.hpp"
 

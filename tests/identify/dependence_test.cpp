@@ -6,9 +6,9 @@
 
 #include <cmath>
 
-#include "offline/identify/rigid.hpp"
+#include "offline/base/random.hpp"
+#include "offline/robot/vectors.hpp"
 #include "offline/simulate/family.hpp"
-#include "offline/simulate/random.hpp"
 #include "tests/identify/simulated.hpp"
 
 namespace {

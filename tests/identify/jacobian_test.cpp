@@ -3,9 +3,9 @@
 
 #include <cmath>
 
+#include "offline/base/random.hpp"
 #include "offline/identify/model.hpp"
-#include "offline/identify/rigid.hpp"
-#include "offline/simulate/random.hpp"
+#include "offline/robot/vectors.hpp"
 
 namespace {
 

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <map>
 
-#include "offline/simulate/random.hpp"
+#include "offline/base/random.hpp"
 #include "tests/identify/ill_posed.hpp"
 
 namespace {

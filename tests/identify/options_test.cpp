@@ -7,9 +7,9 @@
 #include <set>
 
 #include "offline/assess/cross_validation.hpp"
+#include "offline/base/random.hpp"
 #include "offline/identify/folds.hpp"
 #include "offline/simulate/family.hpp"
-#include "offline/simulate/random.hpp"
 #include "tests/identify/simulated.hpp"
 
 namespace {

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "offline/identify/rigid.hpp"
-#include "offline/simulate/random.hpp"
+#include "offline/base/random.hpp"
+#include "offline/robot/vectors.hpp"
 
 namespace mdhcal::tests {
 

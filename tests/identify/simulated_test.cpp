@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "offline/identify/rigid.hpp"
+#include "offline/base/random.hpp"
+#include "offline/robot/vectors.hpp"
 #include "offline/simulate/family.hpp"
-#include "offline/simulate/random.hpp"
 #include "tests/identify/simulated.hpp"
 
 namespace {

@@ -7,9 +7,9 @@
 #include <map>
 #include <string>
 
-#include "offline/error.hpp"
+#include "offline/base/error.hpp"
+#include "offline/base/random.hpp"
 #include "offline/simulate/family.hpp"
-#include "offline/simulate/random.hpp"
 #include "tests/identify/simulated.hpp"
 
 namespace {

@@ -5,10 +5,10 @@
 #include <cmath>
 #include <cstdio>
 
-#include "offline/error.hpp"
+#include "offline/base/error.hpp"
+#include "offline/base/random.hpp"
 #include "offline/measure/dataset.hpp"
 #include "offline/robot/rotation.hpp"
-#include "offline/simulate/random.hpp"
 #include "tests/support/shared_data.hpp"
 
 namespace {

@@ -10,7 +10,7 @@
 #include "mdhcal/kinematics.hpp"
 #include "mdhcal/self_test.hpp"
 #include "mdhcal/solutions.hpp"
-#include "offline/error.hpp"
+#include "offline/base/error.hpp"
 #include "tests/lib/arms.hpp"
 #include "tests/output/sample_robot.hpp"
 

@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "offline/error.hpp"
+#include "offline/base/error.hpp"
 #include "tests/support/program.hpp"
 
 namespace mdhcal::offline {

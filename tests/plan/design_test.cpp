@@ -8,7 +8,7 @@
 #include <Eigen/LU>
 #include <gtest/gtest.h>
 
-#include "offline/simulate/random.hpp"
+#include "offline/base/random.hpp"
 
 namespace {
 

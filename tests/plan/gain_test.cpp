@@ -51,7 +51,7 @@ class Bench {
     truth_.geometry = simulation_.truth.geometry;
     truth_.tracker_T_base = frame_of(*simulation_.truth.tracker_T_base);
     truth_.flange_p_m = {simulation_.truth.targets[0].flange_p_m};
-    layout_ = make_setup(simulation_.nominal, simulation_.train, all, {}).layout;
+    layout_ = choose_unknowns(simulation_.nominal, simulation_.train, all, {}).layout;
     linearise_about_the_truth(simulation_.train, train_, noise_);
     linearise_about_the_truth(simulation_.test, test_, test_noise_);
   }
@@ -60,13 +60,13 @@ class Bench {
 
   /// After a calibration from those candidates.
   HeldOut calibrated(const std::vector<std::size_t>& chosen) const {
-    const Setup setup = make_setup(simulation_.nominal, simulation_.train, chosen, {});
+    const Unknowns unknowns = choose_unknowns(simulation_.nominal, simulation_.train, chosen, {});
     Selection selection;
     selection.rows = chosen;
-    const Fit frames = fit_frames(setup, simulation_.train, selection, noise_mm);
+    const Fit frames = fit_frames(unknowns, simulation_.train, selection, noise_mm);
     FitControl control;
     control.lambda = lambda;
-    const Fit result = fit(simulation_.train, selection, setup.layout, frames.estimate, control);
+    const Fit result = fit(simulation_.train, selection, unknowns.layout, frames.estimate, control);
     const MeasurementModel model(result.estimate), truth(truth_);
     Eigen::VectorXd error(test_.rows());
     for (std::size_t i = 0; i < simulation_.test.rows.size(); ++i) {

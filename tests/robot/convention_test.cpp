@@ -4,10 +4,10 @@
 #include <cmath>
 
 #include "mdhcal/kinematics.hpp"
+#include "offline/base/random.hpp"
 #include "offline/robot/convention.hpp"
 #include "offline/robot/robot.hpp"
 #include "offline/robot/rotation.hpp"
-#include "offline/simulate/random.hpp"
 #include "tests/robot/factory_table.hpp"
 #include "tests/support/shared_data.hpp"
 #include "tests/support/wide_frame.hpp"

@@ -7,8 +7,8 @@
 #include <Eigen/Geometry>
 
 #include "mdhcal/kinematics.hpp"
+#include "offline/base/random.hpp"
 #include "offline/robot/robot.hpp"
-#include "offline/simulate/random.hpp"
 
 namespace mdhcal::offline::test {
 

@@ -5,10 +5,10 @@
 #include <random>
 
 #include "mdhcal/kinematics.hpp"
-#include "offline/error.hpp"
+#include "offline/base/error.hpp"
+#include "offline/base/random.hpp"
 #include "offline/robot/robot.hpp"
 #include "offline/robot/units.hpp"
-#include "offline/simulate/random.hpp"
 
 namespace {
 

@@ -6,11 +6,11 @@
 
 #include <gtest/gtest.h>
 
-#include "offline/error.hpp"
+#include "offline/base/error.hpp"
+#include "offline/base/random.hpp"
 #include "offline/robot/rotation.hpp"
 #include "offline/robot/units.hpp"
 #include "offline/simulate/family.hpp"
-#include "offline/simulate/random.hpp"
 #include "offline/simulate/simulate.hpp"
 #include "tests/robot/eigen_chain.hpp"
 #include "tests/robot/factory_table.hpp"

@@ -5,10 +5,10 @@
 
 #include <gtest/gtest.h>
 
-#include "offline/error.hpp"
+#include "offline/base/error.hpp"
+#include "offline/base/random.hpp"
 #include "offline/robot/ur_factory.hpp"
 #include "offline/simulate/family.hpp"
-#include "offline/simulate/random.hpp"
 #include "offline/simulate/simulate.hpp"
 #include "tests/robot/eigen_chain.hpp"
 

@@ -7,7 +7,7 @@
 #include <Eigen/Geometry>
 #include <gtest/gtest.h>
 
-#include "offline/error.hpp"
+#include "offline/base/error.hpp"
 #include "offline/simulate/family.hpp"
 
 namespace {

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-#include "offline/identify/methods.hpp"
+#include "offline/identify/published_methods.hpp"
 
 #include <cmath>
 
-#include "offline/error.hpp"
+#include "offline/base/error.hpp"
 #include "offline/identify/fit.hpp"
 #include "offline/identify/tikhonov.hpp"
 

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: MIT
-#include "offline/identify/figures.hpp"
+#include "offline/identify/notes.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <cstring>
 
+#include "offline/base/sentences.hpp"
 #include "offline/identify/reduction.hpp"
-#include "offline/identify/rigid.hpp"
 #include "offline/identify/robust.hpp"
-#include "offline/identify/words.hpp"
+#include "offline/robot/vectors.hpp"
 
 namespace mdhcal::offline {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "offline/assess/distributions.hpp"
+#include "offline/base/distributions.hpp"
 
 #include <cmath>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "offline/output/folder.hpp"
+#include "offline/base/folder.hpp"
 
 #include <algorithm>
 #include <cerrno>
@@ -10,7 +10,7 @@
 #include <fcntl.h>
 #include <unistd.h>
 
-#include "offline/error.hpp"
+#include "offline/base/error.hpp"
 
 namespace mdhcal::offline {
 

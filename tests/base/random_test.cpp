@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "offline/simulate/random.hpp"
+#include "offline/base/random.hpp"
 
 #include <cmath>
 

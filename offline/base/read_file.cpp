@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "offline/read_file.hpp"
+#include "offline/base/read_file.hpp"
 
 #include <cerrno>
 #include <cstdio>
@@ -7,7 +7,7 @@
 #include <filesystem>
 #include <memory>
 
-#include "offline/error.hpp"
+#include "offline/base/error.hpp"
 
 namespace mdhcal::offline {
 

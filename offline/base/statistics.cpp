@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "offline/identify/statistics.hpp"
+#include "offline/base/statistics.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "offline/identify/words.hpp"
+#include "offline/base/sentences.hpp"
 
 #include <cstdio>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "offline/cli/progress.hpp"
+#include "offline/base/progress.hpp"
 
 #include <cmath>
 #include <cstdio>

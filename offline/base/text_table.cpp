@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "offline/output/text_table.hpp"
+#include "offline/base/text_table.hpp"
 
 #include <algorithm>
 #include <cmath>

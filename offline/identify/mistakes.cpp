@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: MIT
-#include "offline/identify/suspicion.hpp"
+#include "offline/identify/mistakes.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <functional>
 
 #include "mdhcal/kinematics.hpp"
-#include "offline/error.hpp"
+#include "offline/base/error.hpp"
+#include "offline/base/sentences.hpp"
 #include "offline/identify/registration.hpp"
-#include "offline/identify/rigid.hpp"
-#include "offline/identify/words.hpp"
 #include "offline/robot/units.hpp"
+#include "offline/robot/vectors.hpp"
 
 namespace mdhcal::offline {
 
@@ -83,13 +83,13 @@ std::vector<Mistake> simple_mistakes(const Robot& robot) {
   return out;
 }
 
-double nominal_scale(const Robot& robot, const Dataset& data, const SetupOptions& options) {
+double nominal_scale(const Robot& robot, const Dataset& data, const UnknownsOptions& options) {
   std::vector<std::size_t> rows(data.rows.size());
   for (std::size_t i = 0; i < rows.size(); ++i) rows[i] = i;
-  const Setup setup = make_setup(robot, data, rows, options);
+  const Unknowns unknowns = choose_unknowns(robot, data, rows, options);
   Selection selection;
   selection.rows = rows;
-  return fit_frames(setup, data, selection, options.noise_mm).scale;
+  return fit_frames(unknowns, data, selection, options.noise_mm).scale;
 }
 
 struct Split {
@@ -139,11 +139,11 @@ Split best_split(const Dataset& data, const std::vector<std::size_t>& rows, cons
 
 }  // namespace
 
-void check_poses(const Robot& robot, const Dataset& data, const std::vector<std::size_t>& rows, const Setup& setup) {
+void check_poses(const Robot& robot, const Dataset& data, const std::vector<std::size_t>& rows, const Unknowns& unknowns) {
   std::size_t scalars = 0;
   for (std::size_t row : rows) scalars += residual_count(data.rows[row].kind);
   if (rows.empty()) throw InputError(data.path, 0, 0, "There is no row to identify from.");
-  const std::size_t frames = setup.layout.frame_columns();
+  const std::size_t frames = unknowns.layout.frame_columns();
   if (scalars < frames || scalars == 0) {
     throw InputError(data.path, data.rows[rows.back()].line, 0,
                      "Found " + std::to_string(scalars) + " scalar measurements in " + std::to_string(rows.size()) +
@@ -178,7 +178,7 @@ void check_poses(const Robot& robot, const Dataset& data, const std::vector<std:
                      "The tracker recorded nothing new.");
   }
 
-  if (!setup.layout.base || !setup.layout.target || !positions) return;
+  if (!unknowns.layout.base || !unknowns.layout.target || !positions) return;
   Arm<double> arm{};
   if (make_arm(robot.geometry, arm) != Status::ok) return;
   Pose<double> pose{};
@@ -200,7 +200,7 @@ void check_poses(const Robot& robot, const Dataset& data, const std::vector<std:
 }
 
 void check_simple_mistakes(const Robot& robot, const Dataset& data, const std::vector<std::size_t>& rows,
-                           const SetupOptions& options, double nominal_scale_mm) {
+                           const UnknownsOptions& options, double nominal_scale_mm) {
   // A factory-new arm is off by a few millimetres; nothing below that is a gross mistake.
   if (nominal_scale_mm < 3.0) return;
   Dataset few = data;
@@ -238,7 +238,7 @@ void check_simple_mistakes(const Robot& robot, const Dataset& data, const std::v
 }
 
 std::optional<TrackerMove> find_tracker_move(const Dataset& data, const std::vector<std::size_t>& rows,
-                                             const Setup& setup, const Fit& fit_one, double noise_mm) {
+                                             const Unknowns& unknowns, const Fit& fit_one, double noise_mm) {
   // Residuals that the stated noise explains need no other explanation.
   if (fit_one.scale < 2.0 * (states_sigma(data) ? 1.0 : noise_mm)) return std::nullopt;
   std::vector<std::size_t> usable;
@@ -255,7 +255,7 @@ std::optional<TrackerMove> find_tracker_move(const Dataset& data, const std::vec
   FitControl control;
   control.noise_mm = noise_mm;
   control.loss = Loss::huber;
-  Fit current = fit(joined, selection, setup.layout, fit_one.estimate, control);
+  Fit current = fit(joined, selection, unknowns.layout, fit_one.estimate, control);
   const double one_frame = current.scale;
   Frame<double> total{{1, 0, 0, 0, 1, 0, 0, 0, 1}, {0, 0, 0}};
   const Split split = best_split(joined, usable, current.estimate);
@@ -275,7 +275,7 @@ std::optional<TrackerMove> find_tracker_move(const Dataset& data, const std::vec
       m.position_m = transform(back, m.position_m);
     }
     total = compose(back, total);
-    current = fit(joined, selection, setup.layout, current.estimate, control);
+    current = fit(joined, selection, unknowns.layout, current.estimate, control);
     if (current.scale < one_frame / 3.0) break;
   }
   if (!(current.scale < one_frame / 3.0)) return std::nullopt;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "offline/identify/rigid.hpp"
+#include "offline/robot/vectors.hpp"
 
 #include <cmath>
 

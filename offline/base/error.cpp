@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "offline/error.hpp"
+#include "offline/base/error.hpp"
 
 namespace mdhcal::offline {
 

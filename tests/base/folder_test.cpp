@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "offline/output/folder.hpp"
+#include "offline/base/folder.hpp"
 
 #include <cstdio>
 #include <fstream>
@@ -13,7 +13,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include "offline/error.hpp"
+#include "offline/base/error.hpp"
 
 namespace {
 
