@@ -6,7 +6,7 @@
 
 namespace mdhcal::offline {
 
-/// Figures of a set of position error norms, in the unit of the errors (METHOD.md section 6).
+/// Figures of a set of position error norms, in the unit of the errors.
 struct Statistics {
   std::size_t count = 0;
   double max = 0;

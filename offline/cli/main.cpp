@@ -11,7 +11,7 @@ namespace {
 
 using namespace mdhcal::offline;
 
-// The exit statuses of the program; DESIGN of the command line, held stable.
+// The exit statuses of the program, held stable.
 constexpr int done = 0;
 constexpr int check_failed = 1;
 constexpr int bad_input = 2;

@@ -35,7 +35,7 @@ struct Parameter {
   double prior = 1e-3; ///< prior standard deviation [rad] or [m]; the unit in which the deviation is estimated
 };
 
-/// What the measurements fix of the frames at both ends; decides the gauge (METHOD.md section 2).
+/// What the measurements fix of the frames at both ends; decides the gauge.
 struct Gauge {
   bool base_fitted = true;
   bool target_fitted = true;

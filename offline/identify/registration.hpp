@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Closed-form starting values of the base frame and the target points (METHOD.md section 3).
+// Closed-form starting values of the base frame and the target points.
 #pragma once
 
 #include <vector>

@@ -52,7 +52,7 @@ struct Dataset {
 /// How a row is named to the user: its id, or id/target where there are several targets.
 std::string row_name(const Dataset& data, const Measurement& row);
 
-/// Reads a measurement file (CSV, DESIGN.md). Throws InputError naming file, line, column, found and expected.
+/// Reads a measurement file (CSV, docs/file-formats.md). Throws InputError naming file, line, column, found and expected.
 /// `progress`, if given, is called now and then with the kilobytes read and all of them.
 Dataset read_dataset(const std::string& path, const Robot& robot,
                      const std::function<void(std::size_t, std::size_t)>& progress = {});

@@ -16,7 +16,7 @@ struct Assessment {
   std::optional<CrossValidation> cross_validation;
 };
 
-/// A calibration as result.json (DESIGN.md): figures in millimetres and degrees under keys that say so; every number is
+/// A calibration as result.json: figures in millimetres and degrees under keys that say so; every number is
 /// finite, else null. The same calibration gives the same bytes.
 std::string result_json(const Calibration& calibration, const Assessment& assessment = {});
 

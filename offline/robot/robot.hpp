@@ -44,7 +44,7 @@ struct Robot {
   bool angle_in_deg = true;
 };
 
-/// Reads a robot file (TOML, DESIGN.md). A standard-convention table is converted exactly, with Hayati's beta where
+/// Reads a robot file (TOML, docs/file-formats.md). A standard-convention table is converted exactly, with Hayati's beta where
 /// neighbouring axes are nearly, but not exactly, parallel, so that no length runs away.
 /// Throws InputError naming file, line, column, what was found and what was expected.
 Robot read_robot(const std::string& path);

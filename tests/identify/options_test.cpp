@@ -156,7 +156,7 @@ TEST(Groups, ReflectorsOfOnePoseStayTogether) {
   EXPECT_NE(data.rows[1].group, data.rows[2].group);
 }
 
-// DESIGN and docs/method.md: the prior's centre is the geometry of the robot file.
+// docs/method.md: the prior's centre is the geometry of the robot file.
 TEST(CorrectedRobotAsInput, DeviationsCountFromItsGeometry) {
   const Simulation s = simulated(family_robot("three-parallel"));
   const Calibration first = calibrate(s.nominal, s.train, {});
