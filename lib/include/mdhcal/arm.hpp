@@ -13,6 +13,7 @@ struct ArmLink {
   Real sin_beta, cos_beta;    ///< [1]
   Real a_m, d_m;              ///< [m]
   Real theta_rad;             ///< [rad]
+  Real sign;                  ///< of the joint's own reading, +1 or -1: Arm::map[i][i]
 };
 
 /// A rigid transform as a rotation matrix, row-major, and a translation [m].
@@ -32,6 +33,7 @@ struct Arm {
   ArmLink<Real> link[max_joints];
   Real map[max_joints][max_joints]; ///< joint coordinate i = sum_j map[i][j] reading j
   Real min[max_joints], max[max_joints];  ///< limits of the readings [rad] or [m]
+  std::int32_t has_flange;          ///< 0 if last_T_flange is the identity: it is not looked at then. 1 always works
   Frame<Real> last_T_flange;
   Real reach_m;                     ///< upper bound of the flange's distance from the base, for scaling [m]
 };

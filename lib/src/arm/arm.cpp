@@ -44,6 +44,14 @@ bool valid(const Pose<double>& pose) {
   return true;
 }
 
+// Exactly: a flange that is off by a rounding is one.
+bool is_identity(const Pose<double>& pose) {
+  for (int k = 0; k < 3; ++k) {
+    if (!inside(pose.position_m[k], 0.0) || !inside(pose.quaternion[k + 1], 0.0)) return false;
+  }
+  return true;
+}
+
 template <class Real>
 void to_matrix(const double (&q)[4], Real (&r)[9]) {
   const double w = q[0];
@@ -85,6 +93,7 @@ Status prepare(const Geometry& geometry, Arm<Real>& arm) {
     out.a_m = static_cast<Real>(link.a_m);
     out.d_m = static_cast<Real>(link.d_m);
     out.theta_rad = static_cast<Real>(link.theta_rad);
+    out.sign = static_cast<Real>(joint.sign);
     if (joint.kind == JointKind::prismatic) arm.prismatic_mask |= bit;
     if (joint.has_min == 1) arm.min_mask |= bit;
     if (joint.has_max == 1) arm.max_mask |= bit;
@@ -102,6 +111,7 @@ Status prepare(const Geometry& geometry, Arm<Real>& arm) {
       reach += travel;
     }
   }
+  arm.has_flange = is_identity(geometry.last_T_flange) ? 0 : 1;
   to_matrix(geometry.last_T_flange.quaternion, arm.last_T_flange.rotation);
   for (int k = 0; k < 3; ++k) {
     arm.last_T_flange.position_m[k] = static_cast<Real>(geometry.last_T_flange.position_m[k]);

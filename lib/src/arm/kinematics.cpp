@@ -13,8 +13,8 @@ namespace {
 
 constexpr Real reading_bound = static_cast<Real>(max_reading);
 
-Real joint_coordinate(const Arm<Real>& arm, std::int32_t i, const Real* q) {
-  if (arm.coupled == 0) return arm.map[i][i] * q[i];
+// A joint that others' readings move, too.
+[[gnu::noinline]] Real coupled_coordinate(const Arm<Real>& arm, std::int32_t i, const Real* q) {
   Real sum = 0;
   for (std::int32_t j = 0; j < arm.joint_count; ++j) sum += arm.map[i][j] * q[j];
   return sum;
@@ -24,52 +24,42 @@ bool slides(const Arm<Real>& arm, std::int32_t i) {
   return ((arm.prismatic_mask >> static_cast<std::uint32_t>(i)) & 1U) != 0U;
 }
 
-// What one link does to one row of the rotation and to the position's coordinate of that row. Returns the joint axis's
-// coordinate (third column before Rot_y).
+// What one link does: sines and cosines of alpha and theta; beta's stay with the arm.
 struct LinkTurn {
-  Real sin_alpha, cos_alpha, sine, cosine, a, d, sin_beta, cos_beta;
+  Real sin_alpha, cos_alpha, sine, cosine, a, d;
 };
 
-template <bool tilted>
-inline Real turn_row(const LinkTurn& t, Real* r, Real& position) {
-  const Real x = r[0];
-  const Real y = t.cos_alpha * r[1] + t.sin_alpha * r[2];
-  const Real z = t.cos_alpha * r[2] - t.sin_alpha * r[1];
-  const Real turned_x = t.cosine * x + t.sine * y;
-  position += t.a * x + t.d * z;
-  r[0] = tilted ? t.cos_beta * turned_x - t.sin_beta * z : turned_x;
-  r[1] = t.cosine * y - t.sine * x;
-  r[2] = tilted ? t.sin_beta * turned_x + t.cos_beta * z : z;
-  return z;
-}
-
-template <bool tilted>
-inline void turn_rows(const LinkTurn& t, Frame<Real>& frame, Real* axis) {
-  axis[0] = turn_row<tilted>(t, frame.rotation, frame.position_m[0]);
-  axis[1] = turn_row<tilted>(t, frame.rotation + 3, frame.position_m[1]);
-  axis[2] = turn_row<tilted>(t, frame.rotation + 6, frame.position_m[2]);
-}
-
-inline bool tilts(const LinkTurn& t) { return t.sin_beta > Real{0} || t.sin_beta < Real{0}; }
-
-inline void read_link(const Arm<Real>& arm, std::int32_t i, const Real* q, LinkTurn& t) {
+[[gnu::always_inline]] inline void read_link(const Arm<Real>& arm, std::int32_t i, const Real* q, LinkTurn& t) {
   const ArmLink<Real>& link = arm.link[i];
-  const Real coordinate = joint_coordinate(arm, i, q);
-  const bool sliding = slides(arm, i);
-  const Real theta = sliding ? link.theta_rad : coordinate + link.theta_rad;
-  t.d = sliding ? coordinate + link.d_m : link.d_m;
+  const Real coordinate = arm.coupled == 0 ? link.sign * q[i] : coupled_coordinate(arm, i, q);
+  Real theta = link.theta_rad;
+  t.d = link.d_m;
+  if (slides(arm, i)) {
+    t.d = coordinate + t.d;
+  } else {
+    theta = coordinate + theta;
+  }
   sin_cos_inline(theta, t.sine, t.cosine);
   t.sin_alpha = link.sin_alpha;
   t.cos_alpha = link.cos_alpha;
   t.a = link.a_m;
-  t.sin_beta = link.sin_beta;
-  t.cos_beta = link.cos_beta;
 }
 
-// base_T_1 = A_1: the same sums without the terms that are zero.
-inline void first_link(const Arm<Real>& arm, const Real* q, Frame<Real>& frame, Real* axis) {
-  LinkTurn t;
-  read_link(arm, 0, q, t);
+// Rot_y(beta): the rotation's first and third column. Most links have none.
+[[gnu::always_inline]] inline void tilt(const ArmLink<Real>& link, Real* r) {
+  const Real sine = link.sin_beta;
+  if (!(magnitude(sine) > Real{0})) return;
+  const Real cosine = link.cos_beta;
+  for (int row = 0; row < 3; ++row, r += 3) {
+    const Real x = r[0];
+    const Real z = r[2];
+    r[0] = cosine * x - sine * z;
+    r[2] = sine * x + cosine * z;
+  }
+}
+
+// base_T_1 = A_1 but for beta: the same sums without the terms that are zero.
+inline void first_turn(const LinkTurn& t, Frame<Real>& frame) {
   Real* r = frame.rotation;
   r[0] = t.cosine;
   r[1] = -t.sine;
@@ -83,24 +73,46 @@ inline void first_link(const Arm<Real>& arm, const Real* q, Frame<Real>& frame, 
   frame.position_m[0] = t.a;
   frame.position_m[1] = -(t.d * t.sin_alpha);
   frame.position_m[2] = t.d * t.cos_alpha;
-  for (int row = 0; row < 3; ++row) axis[row] = r[3 * row + 2];
-  if (!tilts(t)) return;
-  for (int row = 0; row < 3; ++row) {
-    const Real x = r[3 * row];
-    r[3 * row] = t.cos_beta * x - t.sin_beta * axis[row];
-    r[3 * row + 2] = t.sin_beta * x + t.cos_beta * axis[row];
+}
+
+// What one link but for beta does to one row of the rotation and to the position's coordinate of that row.
+inline void turn_row(const LinkTurn& t, Real* r, Real& position) {
+  const Real x = r[0];
+  const Real y = t.cos_alpha * r[1] + t.sin_alpha * r[2];
+  const Real z = t.cos_alpha * r[2] - t.sin_alpha * r[1];
+  position += t.a * x + t.d * z;
+  r[0] = t.cosine * x + t.sine * y;
+  r[1] = t.cosine * y - t.sine * x;
+  r[2] = z;
+}
+
+// The joint's axis [0] ... [2] and the origin, before beta.
+inline void keep(const Frame<Real>& frame, Real* axis, Real* origin) {
+  for (int k = 0; k < 3; ++k) {
+    axis[k] = frame.rotation[3 * k + 2];
+    origin[k] = frame.position_m[k];
   }
 }
 
-// base_T_i = base_T_{i-1} A_i. `axis` receives the joint's axis in the base frame. Most links have no beta.
-inline void append_link(const Arm<Real>& arm, std::int32_t i, const Real* q, Frame<Real>& frame, Real* axis) {
+// base_T_i = base_T_{i-1} A_i, in place; of i = 0 base_T_1. Where a column of the Jacobian is asked for, it receives a point
+// on the joint's axis and the axis in the base frame.
+template <bool with_column>
+inline void append_link(const Arm<Real>& arm, std::int32_t i, const Real* q, Frame<Real>& frame, Real* column) {
   LinkTurn t;
   read_link(arm, i, q, t);
-  if (tilts(t)) {
-    turn_rows<true>(t, frame, axis);
+  if (i == 0) {
+    first_turn(t, frame);
   } else {
-    turn_rows<false>(t, frame, axis);
+    turn_row(t, frame.rotation, frame.position_m[0]);
+    turn_row(t, frame.rotation + 3, frame.position_m[1]);
+    turn_row(t, frame.rotation + 6, frame.position_m[2]);
   }
+  if constexpr (with_column) keep(frame, column + 3, column);
+  tilt(arm.link[i], frame.rotation);
+}
+
+inline void append_flange(const Arm<Real>& arm, Frame<Real>& frame) {
+  if (arm.has_flange != 0) multiply(frame, arm.last_T_flange, frame);
 }
 
 constexpr Frame<Real> identity{{1, 0, 0, 0, 1, 0, 0, 0, 1}, {0, 0, 0}};
@@ -109,30 +121,23 @@ constexpr Frame<Real> identity{{1, 0, 0, 0, 1, 0, 0, 0, 1}, {0, 0, 0}};
 
 bool readings_valid(const Arm<Real>& arm, const Real* q) noexcept {
   for (std::int32_t i = 0; i < arm.joint_count; ++i) {
-    if (!within(-reading_bound, q[i], reading_bound)) return false;
+    if (!__builtin_islessequal(magnitude(q[i]), reading_bound)) return false;  // as within() does, in one comparison
   }
   return true;
 }
 
 void evaluate(const Arm<Real>& arm, const Real* q, Frame<Real>& base_T_flange) noexcept {
-  Frame<Real> frame;
-  Real axis[3];
-  first_link(arm, q, frame, axis);
-  for (std::int32_t i = 1; i < arm.joint_count; ++i) append_link(arm, i, q, frame, axis);
-  multiply(frame, arm.last_T_flange, base_T_flange);
+  append_link<false>(arm, 0, q, base_T_flange, nullptr);
+  for (std::int32_t i = 1; i < arm.joint_count; ++i) append_link<false>(arm, i, q, base_T_flange, nullptr);
+  append_flange(arm, base_T_flange);
 }
 
 void evaluate(const Arm<Real>& arm, const Real* q, Frame<Real>& base_T_flange, Jacobian<Real>& coordinates) noexcept {
-  Frame<Real> frame;
-  // Each column first holds the axis and a point on it.
-  first_link(arm, q, frame, coordinates.column[0] + 3);
-  for (int k = 0; k < 3; ++k) coordinates.column[0][k] = frame.position_m[k];
+  append_link<true>(arm, 0, q, base_T_flange, coordinates.column[0]);
   for (std::int32_t i = 1; i < arm.joint_count; ++i) {
-    Real* column = coordinates.column[i];
-    append_link(arm, i, q, frame, column + 3);
-    for (int k = 0; k < 3; ++k) column[k] = frame.position_m[k];
+    append_link<true>(arm, i, q, base_T_flange, coordinates.column[i]);
   }
-  multiply(frame, arm.last_T_flange, base_T_flange);
+  append_flange(arm, base_T_flange);
   for (std::int32_t i = 0; i < arm.joint_count; ++i) {
     Real* column = coordinates.column[i];
     Real* z = column + 3;
@@ -192,14 +197,14 @@ Status forward(const Arm<Real>& arm, const Real* q, Pose<Real>& base_T_flange, J
 
 Status link_frames(const Arm<Real>& arm, const Real* q, Frame<Real>* frames) noexcept {
   if (!readings_valid(arm, q)) return Status::bad_input;
-  Real axis[3];
   frames[0] = identity;
-  first_link(arm, q, frames[1], axis);
+  append_link<false>(arm, 0, q, frames[1], nullptr);
   for (std::int32_t i = 1; i < arm.joint_count; ++i) {
     frames[i + 1] = frames[i];
-    append_link(arm, i, q, frames[i + 1], axis);
+    append_link<false>(arm, i, q, frames[i + 1], nullptr);
   }
-  multiply(frames[arm.joint_count], arm.last_T_flange, frames[arm.joint_count + 1]);
+  frames[arm.joint_count + 1] = frames[arm.joint_count];
+  append_flange(arm, frames[arm.joint_count + 1]);
   return Status::ok;
 }
 
