@@ -67,7 +67,7 @@ typedef struct mdhcal_demands {
 } mdhcal_demands;
 
 /* The status in words: static, never NULL. */
-const char* mdhcal_text(int32_t status);
+const char* mdhcal_status_text(int32_t status);
 
 #define MDHCAL_REAL_TYPE double
 #define MDHCAL_C_NAME(name) mdhcal_##name

@@ -14,7 +14,7 @@ namespace {
 
 constexpr Frame<double> identity{{1, 0, 0, 0, 1, 0, 0, 0, 1}, {0, 0, 0}};
 
-std::string names_of(const mdhcal::Model& model) {
+std::string names_of(const mdhcal::BlobContent& model) {
   std::string names;
   for (std::int32_t k = 0; k < model.target_count; ++k) {
     names += (k == 0 ? "\"" : ", \"") + std::string(model.target[k].name) + '"';

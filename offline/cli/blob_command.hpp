@@ -24,7 +24,7 @@ struct PoseOptions {
 
 /// A blob ready for use: its arm and the transforms that --frame and --target ask for.
 struct BlobArm {
-  mdhcal::Model model;
+  mdhcal::BlobContent model;
   Arm<double> arm;
   Frame<double> world_T_base;    ///< world: the frame that --frame names
   Frame<double> flange_T_target; ///< a translation

@@ -16,11 +16,11 @@ using Json = nlohmann::ordered_json;
 
 const char* kind_name(JointKind kind) { return kind == JointKind::revolute ? "revolute" : "prismatic"; }
 
-const char* family_name(PostureFamily family) {
+const char* family_name(ArmFamily family) {
   switch (family) {
-    case PostureFamily::spherical_wrist: return "spherical wrist";
-    case PostureFamily::parallel_axes: return "three parallel axes";
-    case PostureFamily::general: break;
+    case ArmFamily::spherical_wrist: return "spherical wrist";
+    case ArmFamily::parallel_axes: return "three parallel axes";
+    case ArmFamily::general: break;
   }
   return "general";
 }
@@ -54,7 +54,7 @@ Json pose_json(const Pose<double>& pose) {
 
 Json optional_text(const char* text) { return text[0] == '\0' ? Json() : Json(text); }
 
-Json joints_json(const Model& model) {
+Json joints_json(const BlobContent& model) {
   Json links = Json::array();
   for (std::int32_t i = 0; i < model.geometry.joint_count; ++i) {
     const Joint& joint = model.geometry.joint[i];
@@ -121,7 +121,7 @@ std::uint32_t number(const Blob& bytes, std::size_t offset, std::size_t size) {
 }
 
 template <class Real>
-const char* outcome(const Model& model) {
+const char* outcome(const BlobContent& model) {
   Arm<Real> arm{};
   if (make_arm(model.geometry, arm) != Status::ok) return "not run";
   switch (self_test(model, arm)) {
@@ -134,7 +134,7 @@ const char* outcome(const Model& model) {
 }  // namespace
 
 Json describe_json(const BlobFile& file) {
-  const Model& model = file.model;
+  const BlobContent& model = file.model;
   Json targets = Json::array();
   for (std::int32_t i = 0; i < model.target_count; ++i) {
     targets.push_back({{"name", model.target[i].name}, {"xyz_mm", point_json(model.target[i].flange_p_m)}});

@@ -17,7 +17,7 @@ std::string describe_text(const nlohmann::ordered_json& blob);
 
 /// What changed from blob `a` to blob `b`: parameters, limits, base, targets, provenance, and how far the flange moves over
 /// 1000 joint vectors within the limits (fixed seed). Throws InputError if the arms have other numbers or kinds of joints.
-nlohmann::ordered_json difference_json(const Model& a, const Model& b);
+nlohmann::ordered_json difference_json(const BlobContent& a, const BlobContent& b);
 
 /// difference_json() as text.
 std::string difference_text(const nlohmann::ordered_json& difference);

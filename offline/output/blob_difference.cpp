@@ -64,8 +64,8 @@ void joint(Changes& changes, const std::string& number, const Joint& a, const Jo
   }
 }
 
-void targets(Changes& changes, const Model& a, const Model& b) {
-  const auto find = [](const Model& model, const std::string& name) -> const Target* {
+void targets(Changes& changes, const BlobContent& a, const BlobContent& b) {
+  const auto find = [](const BlobContent& model, const std::string& name) -> const Target* {
     const Target* end = model.target + model.target_count;
     const Target* found = std::find_if(model.target, end, [&](const Target& t) { return name == t.name; });
     return found == end ? nullptr : found;
@@ -90,7 +90,7 @@ void targets(Changes& changes, const Model& a, const Model& b) {
 }
 
 // How far the flange moves from a to b at joint vectors within a's limits, half a turn and 0.5 m where it states none.
-Json movement(const Model& a, const Model& b) {
+Json movement(const BlobContent& a, const BlobContent& b) {
   Arm<double> arm_a{};
   Arm<double> arm_b{};
   if (make_arm(a.geometry, arm_a) != Status::ok || make_arm(b.geometry, arm_b) != Status::ok) return nullptr;
@@ -135,7 +135,7 @@ Json movement(const Model& a, const Model& b) {
 
 }  // namespace
 
-Json difference_json(const Model& a, const Model& b) {
+Json difference_json(const BlobContent& a, const BlobContent& b) {
   bool comparable = a.geometry.joint_count == b.geometry.joint_count;
   for (std::int32_t i = 0; comparable && i < a.geometry.joint_count; ++i) {
     comparable = a.geometry.joint[i].kind == b.geometry.joint[i].kind;

@@ -53,7 +53,7 @@ class Writer {
   Blob& blob_;
 };
 
-void write_joints(Writer& writer, const Model& model) {
+void write_joints(Writer& writer, const BlobContent& model) {
   for (std::size_t i = 0; i < static_cast<std::size_t>(model.geometry.joint_count); ++i) {
     const std::size_t record = at::joints + i * at::joint_size;
     const Joint& joint = model.geometry.joint[i];
@@ -85,7 +85,7 @@ void write_provenance(Writer& writer, const BlobProvenance& provenance) {
 
 }  // namespace
 
-Blob encode(const Model& model) {
+Blob encode(const BlobContent& model) {
   Blob blob{};
   Writer writer(blob);
   writer.u32(at::magic, at::magic_value);

@@ -16,16 +16,16 @@ BlobFile read_blob_file(const std::string& path) {
   const Status status = decode(bytes, text_bytes.size(), DecodeOptions{}, file.model);
   if (status != Status::ok) {
     throw InputError(path, 0, 0,
-                     "The blob is refused: " + std::string(text(status)) + "; found " + std::to_string(text_bytes.size()) +
+                     "The blob is refused: " + std::string(status_text(status)) + "; found " + std::to_string(text_bytes.size()) +
                          " bytes, expected a parameter blob of " + std::to_string(blob_size) + ".");
   }
   std::memcpy(file.bytes.data(), bytes, file.bytes.size());
   return file;
 }
 
-mdhcal::Model read_blob(const std::string& path) { return read_blob_file(path).model; }
+mdhcal::BlobContent read_blob(const std::string& path) { return read_blob_file(path).model; }
 
-Robot robot_of(const mdhcal::Model& model, const std::string& path) {
+Robot robot_of(const mdhcal::BlobContent& model, const std::string& path) {
   Robot robot;
   robot.path = path;
   robot.name = model.name;

@@ -10,16 +10,16 @@ namespace mdhcal::offline {
 /// A blob file that lib's decoder accepts.
 struct BlobFile {
   Blob bytes{};
-  mdhcal::Model model{};
+  mdhcal::BlobContent model{};
 };
 
 /// The bytes and the model of a blob file. Throws InputError naming the file and the reason of the refusal.
 BlobFile read_blob_file(const std::string& path);
 
 /// The model in a blob file, decoded by lib. Throws InputError naming the file and the reason of the refusal.
-mdhcal::Model read_blob(const std::string& path);
+mdhcal::BlobContent read_blob(const std::string& path);
 
 /// The robot that a model describes: corrected and nominal geometry, base and target points; millimetres and degrees.
-Robot robot_of(const mdhcal::Model& model, const std::string& path);
+Robot robot_of(const mdhcal::BlobContent& model, const std::string& path);
 
 }  // namespace mdhcal::offline

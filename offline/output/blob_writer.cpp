@@ -56,7 +56,7 @@ void check_deviation(const Robot& robot) {
   }
 }
 
-void put_targets(const Robot& robot, Model& model) {
+void put_targets(const Robot& robot, BlobContent& model) {
   std::vector<TargetPoint> targets = robot.targets;
   if (targets.empty() && robot.tool_p_m) targets.push_back({"tool", *robot.tool_p_m});
   if (targets.size() > max_targets) {
@@ -106,9 +106,9 @@ void put_provenance(const Robot& robot, const Provenance& from, BlobProvenance& 
 }
 
 // Absent limits and unused joints hold what a file said or nothing; in a blob they are zero.
-void put_geometry(const Robot& robot, Model& model) {
+void put_geometry(const Robot& robot, BlobContent& model) {
   const Geometry& from = robot.geometry;
-  if (check(from) != Status::ok) throw InputError(robot.path, 0, 0, "The geometry is not valid: a value is out of range.");
+  if (check_geometry(from) != Status::ok) throw InputError(robot.path, 0, 0, "The geometry is not valid: a value is out of range.");
   model.geometry.joint_count = from.joint_count;
   for (std::size_t i = 0; i < static_cast<std::size_t>(from.joint_count); ++i) {
     model.geometry.link[i] = from.link[i];
@@ -121,7 +121,7 @@ void put_geometry(const Robot& robot, Model& model) {
   model.geometry.last_T_flange = canonical(from.last_T_flange);
   Geometry nominal = model.geometry;
   std::copy(std::begin(model.nominal), std::end(model.nominal), nominal.link);
-  if (check(nominal) != Status::ok) {
+  if (check_geometry(nominal) != Status::ok) {
     throw InputError(robot.path, 0, 0, "The nominal geometry is not valid: a value is out of range.");
   }
   model.family = posture_family(nominal);
@@ -129,8 +129,8 @@ void put_geometry(const Robot& robot, Model& model) {
 
 }  // namespace
 
-Model make_model(const Robot& robot, const Provenance& provenance) {
-  Model model{};
+BlobContent make_model(const Robot& robot, const Provenance& provenance) {
+  BlobContent model{};
   put_geometry(robot, model);
   check_deviation(robot);
   put_text(robot, "The robot's name", robot.name, model.name);
@@ -149,9 +149,9 @@ Model make_model(const Robot& robot, const Provenance& provenance) {
 
 Blob make_blob(const Robot& robot, const Provenance& provenance) {
   const Blob blob = encode(make_model(robot, provenance));
-  Model model;
+  BlobContent model;
   const Status status = decode(blob.data(), blob.size(), DecodeOptions{}, model);
-  if (status != Status::ok) throw Refusal(robot.path + ": the blob would be refused: " + text(status) + ".");
+  if (status != Status::ok) throw Refusal(robot.path + ": the blob would be refused: " + status_text(status) + ".");
   return blob;
 }
 

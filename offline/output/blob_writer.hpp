@@ -40,10 +40,10 @@ std::string blob_date(const std::optional<std::string>& given);
 /// The model that a robot's blob holds, with self-test vectors computed through lib. [tool] becomes the target point
 /// "tool" if the robot names no target. Throws InputError if the robot does not fit in a blob, Refusal if the
 /// corrected geometry is further from its nominal than the library accepts.
-Model make_model(const Robot& robot, const Provenance& provenance);
+BlobContent make_model(const Robot& robot, const Provenance& provenance);
 
 /// The bytes of a model: decode() gives the model back, and encode(decode(bytes)) gives the bytes back.
-Blob encode(const Model& model);
+Blob encode(const BlobContent& model);
 
 /// encode(make_model()). The same robot and provenance give the same bytes.
 Blob make_blob(const Robot& robot, const Provenance& provenance);

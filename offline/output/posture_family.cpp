@@ -5,15 +5,9 @@
 
 namespace mdhcal::offline {
 
-PostureFamily posture_family(const Geometry& nominal) {
+ArmFamily posture_family(const Geometry& nominal) {
   Arm<double> arm{};
-  if (make_arm(nominal, arm) != Status::ok) return PostureFamily::general;
-  switch (family(arm)) {
-    case Family::parallel: return PostureFamily::parallel_axes;
-    case Family::spherical_wrist: return PostureFamily::spherical_wrist;
-    case Family::general: break;
-  }
-  return PostureFamily::general;
+  return make_arm(nominal, arm) == Status::ok ? family_of(arm) : ArmFamily::general;
 }
 
 }  // namespace mdhcal::offline

@@ -58,8 +58,8 @@ double run(const Arm<Real>& arm, const Joints& readings, Real position_tolerance
     q[i] = vector.q[i] + (i % 2 == 0 ? offset : -offset);
   }
   TickOptions<Real> options = default_tick_options(arm);
-  options.position_tolerance_m = position_tolerance_m;
-  options.rotation_tolerance_rad = rotation_tolerance_rad;
+  options.goal.position_tolerance_m = position_tolerance_m;
+  options.goal.rotation_tolerance_rad = rotation_tolerance_rad;
   TickReport<Real> report{};
   if (forward(arm, vector.q, vector.base_T_flange) != Status::ok) return -1;
   const Status status = tick(arm, options, vector.base_T_flange, q.data(), &report);
@@ -72,7 +72,7 @@ double run(const Arm<Real>& arm, const Joints& readings, Real position_tolerance
 
 }  // namespace
 
-void fill_self_test_vectors(Model& model) {
+void fill_self_test_vectors(BlobContent& model) {
   Arm<double> arm{};
   Arm<float> arm_float{};
   if (make_arm(model.geometry, arm) != Status::ok || make_arm(model.geometry, arm_float) != Status::ok) {

@@ -117,7 +117,7 @@ Robot robot_from_chain(const Chain& chain, const std::string& path) {
   }
   robot.geometry.last_T_flange = pose_of(modified.last_T_flange);
   if (!is_identity(modified.origin)) robot.tracker_T_base = pose_of(modified.origin);
-  if (check(robot.geometry) != Status::ok) {
+  if (check_geometry(robot.geometry) != Status::ok) {
     throw InputError(path, 0, 0, "The chain's lengths, angles or limits lie outside the valid range.");
   }
   return robot;

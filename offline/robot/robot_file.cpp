@@ -414,7 +414,7 @@ Robot Reader::read() {
     convert_standard();
     make_expressible();
   }
-  if (check(robot_.geometry) != Status::ok) {
+  if (check_geometry(robot_.geometry) != Status::ok) {
     throw InputError(path_, 1, 1, "Found a geometry outside the library's valid range; expected lengths and angles within it.");
   }
   return robot_;

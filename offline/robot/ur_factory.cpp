@@ -211,7 +211,7 @@ Robot parse_ur_calibration(const std::string& text, const std::string& path, con
     table[i].alpha_rad += alpha[i];
   }
   set_links(robot, table);
-  if (check(robot.geometry) != Status::ok) {
+  if (check_geometry(robot.geometry) != Status::ok) {
     throw InputError(path, 0, 0, "The corrected lengths or angles lie outside the valid range.");
   }
   return robot;

@@ -56,7 +56,7 @@ Status prepare(const std::uint8_t* bytes, std::size_t size, void* context) {
   target.state = mdhcal::rest(target.compensator, true);
   target.options = mdhcal::default_tick_options(target.compensator.corrected);
   status = mdhcal::self_test(target.model, target.compensator.corrected);
-  Line("self-test: ") << mdhcal::text(status);
+  Line("self-test: ") << mdhcal::status_text(status);
   return status == Status::self_test_tolerance ? Status::ok : status;
 }
 
@@ -71,7 +71,7 @@ void take_update(const mdhcal::Flash& flash, const Options& options, mdhcal::Sto
   LoaderContext context{&options, &spare()};
   const Status status = mdhcal::update(flash, {prepare, &context}, receiver.blob(), mdhcal::blob_size, state);
   if (status != Status::ok) {
-    Line("update: refused, ") << mdhcal::text(status) << "; the active model stays";
+    Line("update: refused, ") << mdhcal::status_text(status) << "; the active model stays";
     return;
   }
   Line("update: committed to slot ") << state.active << ", sequence " << state.sequence;
@@ -115,7 +115,7 @@ void boot(const mdhcal::Flash& flash, const Options& options, mdhcal::StoreState
   LoaderContext context{&options, &corrections[0]};
   const Status status = mdhcal::load_newest(flash, {prepare, &context}, blob, state);
   for (std::uint32_t slot = 0; slot < 2; ++slot) {
-    Line("boot: slot ") << slot << ": " << mdhcal::text(state.slot[slot]);
+    Line("boot: slot ") << slot << ": " << mdhcal::status_text(state.slot[slot]);
   }
   if (status == Status::ok) {
     Line("boot: slot ") << state.active << ", sequence " << state.sequence << ", robot "
@@ -123,10 +123,10 @@ void boot(const mdhcal::Flash& flash, const Options& options, mdhcal::StoreState
     motion.request(*context.target);
     motion.enable(options.allow_nominal);
   } else if (options.allow_nominal) {
-    Line("boot: ") << mdhcal::text(status) << "; moving with nominal joints, as the integrator allows";
+    Line("boot: ") << mdhcal::status_text(status) << "; moving with nominal joints, as the integrator allows";
     motion.enable(true);
   } else {
-    Line("boot: ") << mdhcal::text(status) << "; no motion";
+    Line("boot: ") << mdhcal::status_text(status) << "; no motion";
   }
 }
 
@@ -178,7 +178,7 @@ int main(int count, char** arguments) {
     Receiver::Event event = receiver.idle(now_ms);
     while (event == Receiver::Event::none && channel.take(byte)) event = receiver.take(byte, now_ms);
     if (event == Receiver::Event::blob) take_update(flash.flash, options, state);
-    if (event == Receiver::Event::bad_size) Line("update: refused, ") << mdhcal::text(Status::blob_size);
+    if (event == Receiver::Event::bad_size) Line("update: refused, ") << mdhcal::status_text(Status::blob_size);
     if (event == Receiver::Event::abandoned) {
       Line("update: abandoned after ") << receiver.received() << " bytes; the active model stays";
     }

@@ -11,7 +11,7 @@ namespace firmware {
 
 /// A model made ready for the servo loop. Constant while the loop may hold its pointer.
 struct Correction {
-  mdhcal::Model model;
+  mdhcal::BlobContent model;
   mdhcal::CompensatorModel<double> compensator;
   mdhcal::CompensatorState<double> state;  ///< at rest on the corrected geometry
   mdhcal::TickOptions<double> options;

@@ -11,8 +11,8 @@ int CONSUMER(const uint8_t* blob, size_t size) {
   NAME(model)* const crooked = (NAME(model)*)(void*)(room.bytes + 4);
   NAME(state) loop_a, loop_b, blank;
   NAME(state)* const crooked_state = (NAME(state)*)(void*)(room.bytes + 4);
-  NAME(options) options, wrong;
-  NAME(report) report, report_before;
+  NAME(tick_options) options, wrong;
+  NAME(tick_report) report, report_before;
   NAME(pose) nominal, corrected, command, before, no_rotation;
   static NAME(solutions) solutions, solutions_before;
   mdhcal_demands demands;
@@ -94,11 +94,11 @@ int CONSUMER(const uint8_t* blob, size_t size) {
   REFUSED(NAME(advance)(NULL, (REAL)0.001));
   REFUSED(NAME(advance)(&loop_b, (REAL)-1));
   CHECK(untouched(&loop_b, &blank, sizeof blank));
-  REFUSED(NAME(default_options)(&model, NULL));
-  REFUSED(NAME(default_options)(NULL, &options));
-  REFUSED(NAME(default_options)(&fresh, &options));
-  CHECK(NAME(default_options)(&model, &options) == MDHCAL_OK);
-  CHECK(options.task == MDHCAL_TASK_POSE && options.max_iterations > 0);
+  REFUSED(NAME(default_tick_options)(&model, NULL));
+  REFUSED(NAME(default_tick_options)(NULL, &options));
+  REFUSED(NAME(default_tick_options)(&fresh, &options));
+  CHECK(NAME(default_tick_options)(&model, &options) == MDHCAL_OK);
+  CHECK(options.goal.task == MDHCAL_TASK_POSE && options.max_iterations > 0);
 
   /* The three forms. */
   memcpy(q, start, sizeof q);
@@ -130,7 +130,7 @@ int CONSUMER(const uint8_t* blob, size_t size) {
   no_rotation = nominal;
   no_rotation.quaternion[0] += (REAL)1;
   wrong = options;
-  wrong.task = 4;
+  wrong.goal.task = 4;
   REFUSED(NAME(pose_to_joints)(NULL, &loop_a, &options, &nominal, q, &report));
   REFUSED(NAME(pose_to_joints)(&fresh, &loop_a, &options, &nominal, q, &report));
   REFUSED(NAME(pose_to_joints)(crooked, &loop_a, &options, &nominal, q, &report));
@@ -176,26 +176,26 @@ int CONSUMER(const uint8_t* blob, size_t size) {
   memset(&solutions_before, 0x3B, sizeof solutions_before);
   solutions = solutions_before;
   memcpy(q, start, sizeof q);
-  REFUSED(NAME(find_solutions)(NULL, &options, 0, &corrected, start, &solutions));
+  REFUSED(NAME(find_solutions)(NULL, &options.goal, 0, &corrected, start, &solutions));
   REFUSED(NAME(find_solutions)(&model, NULL, 0, &corrected, start, &solutions));
-  REFUSED(NAME(find_solutions)(&model, &wrong, 0, &corrected, start, &solutions));
-  REFUSED(NAME(find_solutions)(&model, &options, -1, &corrected, start, &solutions));
-  REFUSED(NAME(find_solutions)(&model, &options, 401, &corrected, start, &solutions));
-  REFUSED(NAME(find_solutions)(&model, &options, 0, NULL, start, &solutions));
-  REFUSED(NAME(find_solutions)(&model, &options, 0, &no_rotation, start, &solutions));
-  REFUSED(NAME(find_solutions)(&model, &options, 0, &corrected, NULL, &solutions));
-  REFUSED(NAME(find_solutions)(&model, &options, 0, &corrected, start, NULL));
-  REFUSED(NAME(cold_start)(NULL, &options, 0, &corrected, q));
+  REFUSED(NAME(find_solutions)(&model, &wrong.goal, 0, &corrected, start, &solutions));
+  REFUSED(NAME(find_solutions)(&model, &options.goal, -1, &corrected, start, &solutions));
+  REFUSED(NAME(find_solutions)(&model, &options.goal, 401, &corrected, start, &solutions));
+  REFUSED(NAME(find_solutions)(&model, &options.goal, 0, NULL, start, &solutions));
+  REFUSED(NAME(find_solutions)(&model, &options.goal, 0, &no_rotation, start, &solutions));
+  REFUSED(NAME(find_solutions)(&model, &options.goal, 0, &corrected, NULL, &solutions));
+  REFUSED(NAME(find_solutions)(&model, &options.goal, 0, &corrected, start, NULL));
+  REFUSED(NAME(cold_start)(NULL, &options.goal, 0, &corrected, q));
   REFUSED(NAME(cold_start)(&model, NULL, 0, &corrected, q));
-  REFUSED(NAME(cold_start)(&model, &options, 401, &corrected, q));
-  REFUSED(NAME(cold_start)(&model, &options, 0, NULL, q));
-  REFUSED(NAME(cold_start)(&model, &options, 0, &no_rotation, q));
-  REFUSED(NAME(cold_start)(&model, &options, 0, &corrected, NULL));
+  REFUSED(NAME(cold_start)(&model, &options.goal, 401, &corrected, q));
+  REFUSED(NAME(cold_start)(&model, &options.goal, 0, NULL, q));
+  REFUSED(NAME(cold_start)(&model, &options.goal, 0, &no_rotation, q));
+  REFUSED(NAME(cold_start)(&model, &options.goal, 0, &corrected, NULL));
   CHECK(untouched(&solutions, &solutions_before, sizeof solutions) && untouched(q, start, sizeof q));
-  CHECK(NAME(find_solutions)(&model, &options, 0, &corrected, start, &solutions) == MDHCAL_OK);
+  CHECK(NAME(find_solutions)(&model, &options.goal, 0, &corrected, start, &solutions) == MDHCAL_OK);
   CHECK(solutions.count >= 2 && solutions.distance[0] < CLOSE);
   for (i = 0; i < 6; ++i) q[i] += (REAL)0.7;
-  CHECK(NAME(cold_start)(&model, &options, 0, &corrected, q) == MDHCAL_OK);
+  CHECK(NAME(cold_start)(&model, &options.goal, 0, &corrected, q) == MDHCAL_OK);
   CHECK(NAME(forward)(&model, MDHCAL_CORRECTED, q, &command, NULL) == MDHCAL_OK);
   for (i = 0; i < 3; ++i) {
     const REAL d = command.position_m[i] - corrected.position_m[i];
@@ -204,11 +204,11 @@ int CONSUMER(const uint8_t* blob, size_t size) {
   no_rotation = corrected;
   no_rotation.position_m[0] = 3; /* out of reach */
   memcpy(kept, q, sizeof kept);
-  CHECK(NAME(cold_start)(&model, &options, 0, &no_rotation, q) == MDHCAL_OUT_OF_REACH);
+  CHECK(NAME(cold_start)(&model, &options.goal, 0, &no_rotation, q) == MDHCAL_OUT_OF_REACH);
   CHECK(untouched(q, kept, sizeof q));
 
   /* Words. */
-  CHECK(strcmp(mdhcal_text(MDHCAL_OK), "ok") == 0);
-  CHECK(mdhcal_text(MDHCAL_SELF_TEST_TOLERANCE) != NULL && mdhcal_text(-7) != NULL && mdhcal_text(1000000) != NULL);
+  CHECK(strcmp(mdhcal_status_text(MDHCAL_OK), "ok") == 0);
+  CHECK(mdhcal_status_text(MDHCAL_SELF_TEST_TOLERANCE) != NULL && mdhcal_status_text(-7) != NULL && mdhcal_status_text(1000000) != NULL);
   return 0;
 }

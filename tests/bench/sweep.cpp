@@ -47,8 +47,8 @@ void one(const Arm<double>& arm, Where where, double limit, Random& random, Coun
   double seed[6];
   for (int i = 0; i < 6; ++i) seed[i] = q[i] + (where == Where::singular && i == 4 ? 0 : random.symmetric(servo_step));
   TickOptions<double> options = default_tick_options(arm);
-  options.position_tolerance_m = options.rotation_tolerance_rad = tolerance;
-  if (limit > 0) std::fill(options.max_step, options.max_step + 6, limit);
+  options.goal.position_tolerance_m = options.goal.rotation_tolerance_rad = tolerance;
+  if (limit > 0) std::fill(options.limits.max_step, options.limits.max_step + 6, limit);
   double result[6];
   std::copy(seed, seed + 6, result);
   TickReport<double> report{};
@@ -170,7 +170,7 @@ void excursions(const char* name, const Geometry& geometry, double far_m, double
     most = std::max<int>(most, found.most);
     wavering += found.wavering;
     TickOptions<double> options = servo_options(arm);
-    std::fill(options.max_step, options.max_step + 6, limit);
+    std::fill(options.limits.max_step, options.limits.max_step + 6, limit);
     const double regular_s = median_duration(arm, options, random);
     for (const Due& due : unmet) costs.push_back(duration(arm, options, due) / regular_s);
   }

@@ -10,7 +10,7 @@
 
 namespace {
 
-mdhcal::Model model;
+mdhcal::BlobContent model;
 mdhcal::Status status;
 std::uint32_t crc;
 

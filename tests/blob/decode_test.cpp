@@ -18,7 +18,7 @@ TEST(Decode, ReadsTheGoldenBlobAtAnyAlignment) {
   alignas(8) std::uint8_t room[blob_size + 8];
   for (std::size_t shift = 0; shift < 8; ++shift) {
     std::memcpy(room + shift, golden::every_field, blob_size);
-    const auto model = std::make_unique<Model>();
+    const auto model = std::make_unique<BlobContent>();
     ASSERT_EQ(decode(room + shift, blob_size, {}, *model), Status::ok);
     EXPECT_STREQ(model->serial, "SN/2026-0815");
     EXPECT_EQ(model->geometry.joint_count, 8);
@@ -31,8 +31,8 @@ TEST(Decode, ReadsTheGoldenBlobAtAnyAlignment) {
 TEST(Decode, NoByteIsIgnored) {
   Bytes bytes = copy_of(golden::every_field);
   const auto zeroed = [] {
-    auto model = std::make_unique<Model>();
-    std::memset(static_cast<void*>(model.get()), 0, sizeof(Model));
+    auto model = std::make_unique<BlobContent>();
+    std::memset(static_cast<void*>(model.get()), 0, sizeof(BlobContent));
     return model;
   };
   const auto original = zeroed();
@@ -46,7 +46,7 @@ TEST(Decode, NoByteIsIgnored) {
       const auto model = zeroed();
       if (decode(bytes.data(), bytes.size(), {}, *model) == Status::ok) {
         ++accepted;
-        EXPECT_NE(std::memcmp(model.get(), original.get(), sizeof(Model)), 0) << "byte " << i;
+        EXPECT_NE(std::memcmp(model.get(), original.get(), sizeof(BlobContent)), 0) << "byte " << i;
       }
       bytes[i] = static_cast<std::uint8_t>(bytes[i] ^ mask);
     }
@@ -288,7 +288,7 @@ TEST(Decode, HoldsTheMinimumCounter) {
 }
 
 TEST(Decode, AcceptedArmsGiveFinitePoses) {
-  const auto model = std::make_unique<Model>();
+  const auto model = std::make_unique<BlobContent>();
   ASSERT_EQ(decode(golden::every_field, blob_size, {}, *model), Status::ok);
   Arm<double> arm{};
   ASSERT_EQ(make_arm(model->geometry, arm), Status::ok);

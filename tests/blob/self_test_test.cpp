@@ -11,7 +11,7 @@ namespace mdhcal::test {
 namespace {
 
 template <class Real>
-Real* inverse_of(Model& model) {
+Real* inverse_of(BlobContent& model) {
   if constexpr (sizeof(Real) == 8) {
     return model.double_vector[1].inverse_q;
   } else {
@@ -20,7 +20,7 @@ Real* inverse_of(Model& model) {
 }
 
 template <class Real>
-Pose<Real>& pose_of(Model& model) {
+Pose<Real>& pose_of(BlobContent& model) {
   if constexpr (sizeof(Real) == 8) {
     return model.double_vector[1].base_T_flange;
   } else {
@@ -35,7 +35,7 @@ class SelfTest : public testing::Test {
     ASSERT_EQ(decode(golden::six_joints, blob_size, {}, *model), Status::ok);
     ASSERT_EQ(make_arm(model->geometry, arm), Status::ok);
   }
-  std::unique_ptr<Model> model = std::make_unique<Model>();
+  std::unique_ptr<BlobContent> model = std::make_unique<BlobContent>();
   Arm<Real> arm{};
 };
 using Precisions = testing::Types<double, float>;
@@ -48,7 +48,7 @@ TYPED_TEST(SelfTest, HoldsTheToleranceAgainstForeignArithmetic) {
 
 TYPED_TEST(SelfTest, FailsBeyondTheTolerance) {
   const TypeParam bound = sizeof(TypeParam) == 8 ? TypeParam(2e-9) : TypeParam(2e-5);
-  Model& blob = *this->model;
+  BlobContent& blob = *this->model;
   inverse_of<TypeParam>(blob)[4] += bound;
   EXPECT_EQ(self_test(blob, this->arm), Status::self_test_failed);
   inverse_of<TypeParam>(blob)[4] -= bound;
@@ -61,7 +61,7 @@ TYPED_TEST(SelfTest, FailsBeyondTheTolerance) {
 }
 
 TYPED_TEST(SelfTest, ComparesBitsUnderItsOwnArithmeticId) {
-  Model& blob = *this->model;
+  BlobContent& blob = *this->model;
   blob.arithmetic_id = arithmetic_id;
   EXPECT_EQ(self_test(blob, this->arm), Status::self_test_failed) << "the golden bits are not this library's";
   // Make them so.
@@ -69,8 +69,8 @@ TYPED_TEST(SelfTest, ComparesBitsUnderItsOwnArithmeticId) {
     for (std::size_t v = 0; v < 2; ++v) {
       ASSERT_EQ(forward(this->arm, vector[v].q, vector[v].base_T_flange), Status::ok);
       TickOptions<TypeParam> options = default_tick_options(this->arm);
-      options.position_tolerance_m = sizeof(TypeParam) == 8 ? TypeParam(1e-10) : TypeParam(5e-6F);
-      options.rotation_tolerance_rad = options.position_tolerance_m;
+      options.goal.position_tolerance_m = sizeof(TypeParam) == 8 ? TypeParam(1e-10) : TypeParam(5e-6F);
+      options.goal.rotation_tolerance_rad = options.goal.position_tolerance_m;
       for (std::size_t i = 0; i < 6; ++i) {
         vector[v].inverse_q[i] = vector[v].q[i] + (i % 2 == 0 ? TypeParam(0.015625) : TypeParam(-0.015625));
       }
@@ -129,7 +129,7 @@ TYPED_TEST(SelfTest, FailsWithoutVectors) {
 
 // Under a foreign arithmetic id an inverse that did not arrive binds nobody; its pose does.
 TYPED_TEST(SelfTest, LeavesOutForeignInversesThatDidNotArrive) {
-  Model& blob = *this->model;
+  BlobContent& blob = *this->model;
   blob.double_vector[1].inverse_status = 5;
   blob.float_vector[1].inverse_status = 5;
   inverse_of<TypeParam>(blob)[0] += TypeParam(0.5);

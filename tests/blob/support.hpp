@@ -31,11 +31,11 @@ inline void repair_crc(Bytes& bytes) { put(bytes, blob_layout::crc, crc32(bytes.
 
 /// A model filled with a pattern, to see whether decode() touched it.
 struct Watched {
-  std::unique_ptr<Model> model = std::make_unique<Model>();
-  Watched() { std::memset(static_cast<void*>(model.get()), 0x5A, sizeof(Model)); }
+  std::unique_ptr<BlobContent> model = std::make_unique<BlobContent>();
+  Watched() { std::memset(static_cast<void*>(model.get()), 0x5A, sizeof(BlobContent)); }
   bool untouched() const {
     const auto* bytes = reinterpret_cast<const std::uint8_t*>(model.get());
-    for (std::size_t i = 0; i < sizeof(Model); ++i) {
+    for (std::size_t i = 0; i < sizeof(BlobContent); ++i) {
       if (bytes[i] != 0x5A) return false;
     }
     return true;

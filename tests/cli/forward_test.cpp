@@ -72,7 +72,7 @@ MDHCAL_SHARED_DATA_TEST(Forward, FactoryRobotsFromTheBlobAreThePlainProductAndHa
     ASSERT_EQ(run_mdhcal({"pack", shared_data(name), "-o", folder / "a.blob"}).exit_code, 0);
     const std::string bytes = read_bytes(folder / "a.blob");
     ASSERT_EQ(bytes.size(), blob_size);
-    Model model;
+    BlobContent model;
     ASSERT_EQ(decode(reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size(), {}, model), Status::ok);
     for (int i = 0; i < 6; ++i) {
       EXPECT_LE(std::abs(model.geometry.link[i].a_m), 2.0);

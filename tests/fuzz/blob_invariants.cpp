@@ -29,7 +29,7 @@ bool framed(const std::uint8_t* bytes) {
          number(bytes + 12, 4) == at::layout_id_value && number(bytes + 4092, 4) == crc32(bytes, 4092);
 }
 
-bool counted(const Model& m) {
+bool counted(const BlobContent& m) {
   const auto family = static_cast<std::int32_t>(m.family);
   bool good = m.geometry.joint_count >= 1 && m.geometry.joint_count <= 8 && m.target_count >= 0 && m.target_count <= 8 &&
               family >= 0 && family <= 2 && m.double_vector_count >= 0 && m.double_vector_count <= 4 &&
@@ -47,10 +47,10 @@ bool unit(const double (&q)[4]) {
   return inside(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3], 1 - 1e-8, 1 + 1e-8) && q[0] >= 0;
 }
 
-bool ranged(const Model& m) {
+bool ranged(const BlobContent& m) {
   Geometry nominal = m.geometry;
   std::memcpy(nominal.link, m.nominal, sizeof nominal.link);
-  bool good = check(m.geometry) == Status::ok && check(nominal) == Status::ok && unit(m.geometry.last_T_flange.quaternion) &&
+  bool good = check_geometry(m.geometry) == Status::ok && check_geometry(nominal) == Status::ok && unit(m.geometry.last_T_flange.quaternion) &&
               unit(m.tracker_T_base.quaternion);
   for (const double p : m.tracker_T_base.position_m) good = good && inside(p, -1000, 1000);
   for (const Target& target : m.target) {
@@ -68,7 +68,7 @@ bool ranged(const Model& m) {
   return good && inside(p.lambda, 0, 1e30);
 }
 
-bool close_to_nominal(const Model& m) {
+bool close_to_nominal(const BlobContent& m) {
   bool good = true;
   for (std::int32_t i = 0; i < m.geometry.joint_count; ++i) {
     const Link& a = m.geometry.link[i];
@@ -85,7 +85,7 @@ bool terminated(const char (&text)[size]) {
   return std::memchr(text, 0, size) != nullptr;
 }
 
-bool texts_end(const Model& m) {
+bool texts_end(const BlobContent& m) {
   bool good = terminated(m.name) && terminated(m.serial) && terminated(m.provenance.tool_version) &&
               terminated(m.provenance.date) && terminated(m.provenance.method) && terminated(m.provenance.lambda_rule);
   for (const Target& target : m.target) good = good && terminated(target.name);
@@ -94,7 +94,7 @@ bool texts_end(const Model& m) {
 
 // Finite poses with unit rotations at zero, at the ends of the readings' range and in between.
 template <class Real>
-bool poses_finite(const Model& m) {
+bool poses_finite(const BlobContent& m) {
   Arm<Real> arm{};
   if (make_arm(m.geometry, arm) != Status::ok) return false;
   const Real unit_tolerance = sizeof(Real) == 8 ? Real(1e-9) : Real(1e-4);
@@ -120,7 +120,7 @@ bool poses_finite(const Model& m) {
 }
 
 template <class Real>
-bool self_test_ends(const Model& m) {
+bool self_test_ends(const BlobContent& m) {
   Arm<Real> arm{};
   if (make_arm(m.geometry, arm) != Status::ok) return false;
   const Status status = self_test(m, arm);
@@ -128,13 +128,13 @@ bool self_test_ends(const Model& m) {
 }
 
 // A blob of this format version says nothing that its model does not.
-bool nothing_lost(const std::uint8_t* bytes, const Model& m) {
+bool nothing_lost(const std::uint8_t* bytes, const BlobContent& m) {
   return number(bytes + 6, 2) != 0 || std::memcmp(offline::encode(m).data(), bytes, blob_size) == 0;
 }
 
 }  // namespace
 
-const char* broken_invariant(const std::uint8_t* bytes, const Model& model, bool thorough) {
+const char* broken_invariant(const std::uint8_t* bytes, const BlobContent& model, bool thorough) {
   if (!framed(bytes)) return "whole";
   if (!counted(model)) return "counted";
   if (!ranged(model)) return "ranged";

@@ -154,8 +154,8 @@ int main(int argc, char** argv) {
   std::vector<std::uint32_t> crcs;
   for (const auto& base : bases) crcs.push_back(crc32(base.data(), at::crc));
   std::uint8_t* bytes = guarded_page();
-  static Model model;
-  static Model before;
+  static BlobContent model;
+  static BlobContent before;
   std::memset(static_cast<void*>(&before), 0x5A, sizeof before);
   std::array<std::uint64_t, 64> statuses{};
   for (std::uint64_t i = 0; i < count; ++i) {
@@ -180,7 +180,7 @@ int main(int argc, char** argv) {
   }
   std::printf("%llu mutated blobs, every invariant held\n", static_cast<unsigned long long>(count));
   for (std::size_t s = 0; s < statuses.size(); ++s) {
-    if (statuses[s] != 0) std::printf("%12llu  %s\n", static_cast<unsigned long long>(statuses[s]), text(static_cast<Status>(s)));
+    if (statuses[s] != 0) std::printf("%12llu  %s\n", static_cast<unsigned long long>(statuses[s]), status_text(static_cast<Status>(s)));
   }
   return 0;
 }

@@ -30,12 +30,12 @@ using offline::Refusal;
 }
 
 void decode_once(const std::uint8_t* bytes, std::size_t size) {
-  const auto model = std::make_unique<Model>();
-  const auto before = std::make_unique<Model>();
-  std::memset(static_cast<void*>(model.get()), 0x5A, sizeof(Model));
-  std::memset(static_cast<void*>(before.get()), 0x5A, sizeof(Model));
+  const auto model = std::make_unique<BlobContent>();
+  const auto before = std::make_unique<BlobContent>();
+  std::memset(static_cast<void*>(model.get()), 0x5A, sizeof(BlobContent));
+  std::memset(static_cast<void*>(before.get()), 0x5A, sizeof(BlobContent));
   if (decode(bytes, size, DecodeOptions{}, *model) != Status::ok) {
-    if (std::memcmp(model.get(), before.get(), sizeof(Model)) != 0) stop("untouched when refused");
+    if (std::memcmp(model.get(), before.get(), sizeof(BlobContent)) != 0) stop("untouched when refused");
     return;
   }
   if (const char* broken = broken_invariant(bytes, *model, true)) stop(broken);
@@ -60,7 +60,7 @@ void load_once(Load load, Count count, Forward forward, const std::uint8_t* byte
   const auto before = std::make_unique<CModel>();
   std::memset(model.get(), 0x5A, sizeof(CModel));
   std::memset(before.get(), 0x5A, sizeof(CModel));
-  const auto decoded = std::make_unique<Model>();
+  const auto decoded = std::make_unique<BlobContent>();
   const auto expected = static_cast<std::int32_t>(decode(bytes, size, DecodeOptions{}, *decoded));
   const std::int32_t status = load(model.get(), sizeof(CModel), MDHCAL_ABI_VERSION, bytes, size, nullptr);
   if (expected != MDHCAL_OK && status != expected) stop("the C loader refuses as decode() does");
@@ -100,7 +100,7 @@ void robot_target(const std::uint8_t* data, std::size_t size) {
   } catch (const InputError&) {
     return;
   }
-  if (check(robot.geometry) != Status::ok) stop("a robot that was read is valid");
+  if (check_geometry(robot.geometry) != Status::ok) stop("a robot that was read is valid");
   const offline::Robot again = offline::parse_robot(offline::write_robot(robot), "again.toml");
   if (!same_bits(robot.geometry, again.geometry)) stop("a robot that was written reads back");
   try {

@@ -78,7 +78,7 @@ TYPED_TEST(Forms, AreTrueOfArmsOfFiveToEightJoints) {
       ASSERT_EQ(make_compensator(kind.nominal, corrected, model), Status::ok);
       const CompensatorState<Real> state = rest(model, true);
       TickOptions<Real> options = default_tick_options(model.corrected);
-      options.task = kind.task;
+      options.goal.task = kind.task;
       Real nominal_q[max_joints] = {};
       this->draw(kind.nominal, random, nominal_q);
       const Matrix meant = product_of_factors(kind.nominal, nominal_q);

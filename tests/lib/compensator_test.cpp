@@ -20,9 +20,9 @@ class Compensator : public ::testing::Test {
     Random random(31);
     ASSERT_EQ(make_compensator(ur5(), with_errors(ur5(), random, 1e-3, 0.1 * deg), model), Status::ok);
     options = default_tick_options(model.corrected);
-    for (int i = 0; i < 6; ++i) options.max_step[i] = Real(0.00314);
+    for (int i = 0; i < 6; ++i) options.limits.max_step[i] = Real(0.00314);
     ASSERT_EQ(forward(model.nominal, start, target), Status::ok);
-    tolerance = Real(1.01) * options.position_tolerance_m;
+    tolerance = Real(1.01) * options.goal.position_tolerance_m;
   }
   CompensatorModel<Real> model{};
   TickOptions<Real> options{};

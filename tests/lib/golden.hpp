@@ -80,7 +80,7 @@ std::uint64_t golden_hash(int operations) {
     if (make_compensator(golden_arm(m == 1, false), golden_arm(m == 1, true), models[m]) != Status::ok) return 0;
     hash.add(Status::ok);
     options[m] = default_tick_options(models[m].corrected);
-    for (int j = 0; j < 6; ++j) options[m].max_step[j] = static_cast<Real>(0.0625F);
+    for (int j = 0; j < 6; ++j) options[m].limits.max_step[j] = static_cast<Real>(0.0625F);
     ramp[m] = rest(models[m], false);
     hash.add(start_ramp(ramp[m], true, static_cast<Real>(16)));
   }

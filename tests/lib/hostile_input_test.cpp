@@ -53,7 +53,8 @@ class HostileInput : public ::testing::Test {
     Random random(81);
     ASSERT_EQ(make_compensator(ur5(), with_errors(ur5(), random, 1e-3, 0.1 * deg), model), Status::ok);
     options = default_solution_options(model.corrected);
-    options.tick.posture_gain = Real(0.1);
+    tick_options = default_tick_options(model.corrected);
+    tick_options.posture.gain = Real(0.1);
     state = rest(model, true);
     state.progress = Real(0.5);
     for (std::size_t i = 0; i < 6; ++i) {
@@ -75,13 +76,15 @@ class HostileInput : public ::testing::Test {
     for (Real& p : target.position_m) slots.push_back(&p);
     return slots;
   }
-  std::vector<Real*> of_options() {
-    TickOptions<Real>& t = options.tick;
-    std::vector<Real*> slots = {&t.position_tolerance_m, &t.rotation_tolerance_rad, &t.position_weight,
-                                &t.rotation_weight, &t.posture_gain};
+  static std::vector<Real*> of(GoalOptions<Real>& goal) {
+    return {&goal.position_tolerance_m, &goal.rotation_tolerance_rad, &goal.position_weight, &goal.rotation_weight};
+  }
+  static std::vector<Real*> of(TickOptions<Real>& t) {
+    std::vector<Real*> slots = of(t.goal);
+    slots.push_back(&t.posture.gain);
     for (std::size_t i = 0; i < 6; ++i) {
-      slots.push_back(&t.max_step[i]);
-      slots.push_back(&t.posture[i]);
+      slots.push_back(&t.limits.max_step[i]);
+      slots.push_back(&t.posture.q[i]);
     }
     return slots;
   }
@@ -137,6 +140,7 @@ class HostileInput : public ::testing::Test {
 
   CompensatorModel<Real> model{};
   SolutionOptions<Real> options{};
+  TickOptions<Real> tick_options{};
   CompensatorState<Real> state{};
   Pose<Real> target{};
   Joints joints{};
@@ -187,24 +191,24 @@ TYPED_TEST(HostileInput, OfTheSolver) {
   };
   this->attack("find_solutions, posture", this->of(posture, 6), find);
   this->attack("find_solutions, target", this->of_target(), find);
-  this->attack("find_solutions, options", this->of_options(), find);
+  this->attack("find_solutions, options", this->of(this->options.goal), find);
   for (const std::int32_t restarts : {std::int32_t{-1}, max_restarts + 1, std::numeric_limits<std::int32_t>::max()}) {
     this->options.restarts = restarts;
     EXPECT_TRUE(find().status == Status::bad_input && find().untouched);
   }
   this->options.restarts = 0;
   for (const std::int32_t task : {std::int32_t{-1}, std::int32_t{4}, std::numeric_limits<std::int32_t>::max()}) {
-    this->options.tick.task = static_cast<Task>(task);
+    this->options.goal.task = static_cast<Task>(task);
     EXPECT_TRUE(find().status == Status::bad_input && find().untouched);
   }
-  this->options.tick.task = Task::pose;
+  this->options.goal.task = Task::pose;
   // One restart, since a tolerance that nothing meets would use all of them; from elsewhere, or the start is the answer.
   this->options.restarts = 1;
   this->joints.q[1] += Real(0.5);
   const auto start = this->in_place([&](Real* q) { return cold_start(arm, this->options, this->target, q); });
   this->attack("cold_start, joints", this->of(this->joints.q, 6), start);
   this->attack("cold_start, target", this->of_target(), start);
-  this->attack("cold_start, options", this->of_options(), start);
+  this->attack("cold_start, options", this->of(this->options.goal), start);
   // Rotations that are none.
   for (const Real scale : {Real(0), Real(0.5), Real(0.999), Real(1.001), Real(2)}) {
     Pose<Real> wrong = this->target;
@@ -218,7 +222,7 @@ TYPED_TEST(HostileInput, OfTheSolver) {
 
 TYPED_TEST(HostileInput, OfTheCompensator) {
   using Real = TypeParam;
-  const TickOptions<Real>& how = this->options.tick;
+  const TickOptions<Real>& how = this->tick_options;
   this->joints.q[1] += Real(0.01);
   const auto first = this->in_place([&](Real* q) {
     return pose_to_joints(this->model, this->state, how, this->target, q);
@@ -232,7 +236,7 @@ TYPED_TEST(HostileInput, OfTheCompensator) {
   });
   for (const auto& form : {first, second, third}) {
     this->attack("joints", this->of(this->joints.q, 6), form);
-    this->attack("options", this->of_options(), form);
+    this->attack("options", this->of(this->tick_options), form);
     this->attack("progress", {&this->state.progress}, form);
   }
   this->attack("first form, target", this->of_target(), first);
@@ -303,7 +307,7 @@ TYPED_TEST(HostileInput, OfTheGeometry) {
   const auto expect_refused = [&](const char* what) {
     Arm<Real> arm = before;
     CompensatorModel<Real> made = model_before;
-    EXPECT_EQ(check(g), Status::bad_input) << what;
+    EXPECT_EQ(check_geometry(g), Status::bad_input) << what;
     EXPECT_EQ(make_arm(g, arm), Status::bad_input) << what;
     EXPECT_EQ(make_compensator(g, g, made), Status::bad_input) << what;
     EXPECT_EQ(make_compensator(ur5(), g, made), Status::bad_input) << what;

@@ -155,7 +155,7 @@ TYPED_TEST(Tick, KeepsTheStepLimitForTheWholeTick) {
   Arm<Real> arm{};
   ASSERT_EQ(make_arm(with_errors(ur5(), random, 1e-3, 0.1 * deg), arm), Status::ok);
   TickOptions<Real> options = default_tick_options(arm);
-  for (int i = 0; i < 6; ++i) options.max_step[i] = Real(0.00314);
+  for (int i = 0; i < 6; ++i) options.limits.max_step[i] = Real(0.00314);
   for (int n = 0; n < cases(20000); ++n) {
     const RegularCase<Real> truth = regular_case(arm, random);
     Real q[6];

@@ -43,9 +43,9 @@ void expect_sound(const Sample& s, const SolutionOptions<double>& options, const
   for (int k = 0; k < found.count; ++k) {
     Pose<double> reached{};
     ASSERT_EQ(forward(s.arm, found.q[k], reached), Status::ok);
-    ASSERT_LE(position_distance(reached, s.target), 1.01 * options.tick.position_tolerance_m);
-    if (options.tick.task == Task::pose) {
-      ASSERT_LE(small_angle(reached, s.target), 1.01 * options.tick.rotation_tolerance_rad);
+    ASSERT_LE(position_distance(reached, s.target), 1.01 * options.goal.position_tolerance_m);
+    if (options.goal.task == Task::pose) {
+      ASSERT_LE(small_angle(reached, s.target), 1.01 * options.goal.rotation_tolerance_rad);
     }
     for (int i = 0; i < joints; ++i) {
       const std::uint32_t bit = 1U << static_cast<std::uint32_t>(i);
@@ -110,13 +110,13 @@ TEST(FindSolutions, FindsNineOfTenNearEachSingularity) {
 TEST(FindSolutions, KnowsTheFamilies) {
   Arm<double> arm{};
   ASSERT_EQ(make_arm(ur5(), arm), Status::ok);
-  EXPECT_EQ(family(arm), Family::parallel);
+  EXPECT_EQ(family_of(arm), ArmFamily::parallel_axes);
   ASSERT_EQ(make_arm(wrist_arm(), arm), Status::ok);
-  EXPECT_EQ(family(arm), Family::spherical_wrist);
+  EXPECT_EQ(family_of(arm), ArmFamily::spherical_wrist);
   ASSERT_EQ(make_arm(seven_joint_arm(), arm), Status::ok);
-  EXPECT_EQ(family(arm), Family::general);
+  EXPECT_EQ(family_of(arm), ArmFamily::general);
   ASSERT_EQ(make_arm(published_robot(), arm), Status::ok);
-  EXPECT_EQ(family(arm), Family::parallel);
+  EXPECT_EQ(family_of(arm), ArmFamily::parallel_axes);
 }
 
 // A nominal arm of either family has exactly eight solutions of a pose well inside, and they come without refinement's
@@ -296,7 +296,7 @@ TEST(ColdStart, SolvesArmsWithoutAClosedForm) {
       Pose<double> target{};
       ASSERT_EQ(forward(arm, truth, target), Status::ok);
       SolutionOptions<double> options = default_solution_options(arm);
-      options.tick.task = a.task;
+      options.goal.task = a.task;
       ASSERT_EQ(cold_start(arm, options, target, q), Status::ok) << n;
       Pose<double> reached{};
       ASSERT_EQ(forward(arm, q, reached), Status::ok);

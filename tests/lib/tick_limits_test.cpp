@@ -127,15 +127,15 @@ TEST(TickRedundant, MeetsThePoseAndGoesTowardsThePosture) {
     TickOptions<double> options = default_tick_options(arm);
     for (int i = 0; i < joints; ++i) {
       q[i] = (i % 2 == 0 ? 1 : -1) * random.uniform(0.5, 1.2);
-      options.posture[i] = q[i] + random.symmetric(0.4);
-      options.max_step[i] = 0.05;
+      options.posture.q[i] = q[i] + random.symmetric(0.4);
+      options.limits.max_step[i] = 0.05;
     }
-    options.posture_gain = 0.2;
+    options.posture.gain = 0.2;
     Pose<double> target{};
     ASSERT_EQ(forward(arm, q, target), Status::ok);
     const auto distance = [&] {
       double sum = 0;
-      for (int i = 0; i < joints; ++i) sum += (q[i] - options.posture[i]) * (q[i] - options.posture[i]);
+      for (int i = 0; i < joints; ++i) sum += (q[i] - options.posture.q[i]) * (q[i] - options.posture.q[i]);
       return std::sqrt(sum);
     };
     const double start = distance();
@@ -180,8 +180,8 @@ TEST(TickTasks, MeetsWhatTheTaskAsksFor) {
       Pose<double> target{};
       ASSERT_EQ(forward(arm, goal, target), Status::ok);
       TickOptions<double> options = default_tick_options(arm);
-      options.task = c.task;
-      options.position_tolerance_m = options.rotation_tolerance_rad = 1e-9;
+      options.goal.task = c.task;
+      options.goal.position_tolerance_m = options.goal.rotation_tolerance_rad = 1e-9;
       ASSERT_EQ(tick(arm, options, target, q), Status::ok) << static_cast<int>(c.task) << " " << n;
       Pose<double> reached{};
       ASSERT_EQ(forward(arm, q, reached), Status::ok);
@@ -259,13 +259,13 @@ TYPED_TEST(TickInput, AnswersWhateverItIsGiven) {
       } else if (slot < 13) {
         pose.position_m[slot - 10] = value;
       } else if (slot < 19) {
-        options.max_step[slot - 13] = value;
+        options.limits.max_step[slot - 13] = value;
       } else if (slot < 25) {
-        options.posture[slot - 19] = value;
-        options.posture_gain = Real(0.5);
+        options.posture.q[slot - 19] = value;
+        options.posture.gain = Real(0.5);
       } else {
-        Real* const scalar[] = {&options.position_tolerance_m, &options.rotation_tolerance_rad, &options.position_weight,
-                                &options.rotation_weight, &options.posture_gain};
+        Real* const scalar[] = {&options.goal.position_tolerance_m, &options.goal.rotation_tolerance_rad, &options.goal.position_weight,
+                                &options.goal.rotation_weight, &options.posture.gain};
         if (slot < 30) *scalar[slot - 25] = value;
         if (slot == 30) options.max_iterations = value > Real(0) ? 1000 : -1;
       }
@@ -299,7 +299,7 @@ TYPED_TEST(TickInput, AnswersWhateverItIsGiven) {
   Real q[6] = {};
   EXPECT_EQ(tick(arm, default_tick_options(arm), none, q), Status::bad_input);
   TickOptions<Real> unknown = default_tick_options(arm);
-  unknown.task = static_cast<Task>(7);
+  unknown.goal.task = static_cast<Task>(7);
   EXPECT_EQ(tick(arm, unknown, target, q), Status::bad_input);
 }
 
@@ -318,9 +318,9 @@ TYPED_TEST(TickInput, BearsTheSmallestOptions) {
     for (int i = 0; i < 6; ++i) last[i] = q[i] = static_cast<Real>(random.symmetric(pi));
     TickOptions<Real> options = default_tick_options(arm);
     const Real least = n % 2 == 0 ? std::numeric_limits<Real>::denorm_min() : static_cast<Real>(1e-6);
-    options.max_step[n % 6] = least;
-    options.rotation_weight = static_cast<Real>(n % 3 == 0 ? 1e-6 : 1e-3);
-    options.position_weight = static_cast<Real>(n % 5 == 0 ? 1e6 : 1);
+    options.limits.max_step[n % 6] = least;
+    options.goal.rotation_weight = static_cast<Real>(n % 3 == 0 ? 1e-6 : 1e-3);
+    options.goal.position_weight = static_cast<Real>(n % 5 == 0 ? 1e6 : 1);
     options.max_iterations = 1 + n % 9;
     TickReport<Real> report{};
     const Status status = tick(arm, options, target, q, &report);

@@ -18,8 +18,8 @@ inline constexpr double servo_step = 0.00314;
 template <class Real>
 TickOptions<Real> servo_options(const Arm<Real>& arm) {
   TickOptions<Real> options = default_tick_options(arm);
-  if (sizeof(Real) == sizeof(double)) options.position_tolerance_m = options.rotation_tolerance_rad = Real(1e-6);
-  std::fill(options.max_step, options.max_step + max_joints, static_cast<Real>(servo_step));
+  if (sizeof(Real) == sizeof(double)) options.goal.position_tolerance_m = options.goal.rotation_tolerance_rad = Real(1e-6);
+  std::fill(options.limits.max_step, options.limits.max_step + max_joints, static_cast<Real>(servo_step));
   return options;
 }
 
@@ -177,7 +177,7 @@ struct Due {
 inline Excursion there_and_back(const Arm<double>& arm, const double* start, double far_m, double advance_m,
                                 double max_step, std::vector<Due>* unmet = nullptr) {
   TickOptions<double> options = servo_options(arm);
-  std::fill(options.max_step, options.max_step + 6, max_step);
+  std::fill(options.limits.max_step, options.limits.max_step + 6, max_step);
   Pose<double> home{};
   EXPECT_EQ(forward(arm, start, home), Status::ok);
   const double* p = home.position_m;

@@ -137,8 +137,8 @@ void meets_near(Near where, double errors_mm, bool limited, int count, std::uint
     Real result[6];
     for (int i = 0; i < 6; ++i) result[i] = seed_q[i] = q[i] + static_cast<Real>(random.symmetric(0.99 * servo_step));
     TickOptions<Real> options = default_tick_options(arm);
-    options.position_tolerance_m = options.rotation_tolerance_rad = tolerance;
-    if (limited) std::fill(options.max_step, options.max_step + 6, static_cast<Real>(servo_step));
+    options.goal.position_tolerance_m = options.goal.rotation_tolerance_rad = tolerance;
+    if (limited) std::fill(options.limits.max_step, options.limits.max_step + 6, static_cast<Real>(servo_step));
     ASSERT_EQ(tick(arm, options, target, result), Status::ok) << n;
     Pose<Real> reached{};
     ASSERT_EQ(forward(arm, result, reached), Status::ok);
@@ -189,8 +189,8 @@ TEST(TickNearSingular, NamesNoJointOnALimitWhereThePoseIsMet) {
     ASSERT_EQ(forward(arm, q, target), Status::ok);
     for (double& joint : q) joint += (random.symmetric(1) > 0 ? 1 : -1) * 0.99 * servo_step;
     TickOptions<double> options = default_tick_options(arm);
-    options.position_tolerance_m = options.rotation_tolerance_rad = 1e-6;
-    std::fill(options.max_step, options.max_step + 6, servo_step);
+    options.goal.position_tolerance_m = options.goal.rotation_tolerance_rad = 1e-6;
+    std::fill(options.limits.max_step, options.limits.max_step + 6, servo_step);
     TickReport<double> report{};
     if (tick(arm, options, target, q, &report) != Status::ok) continue;
     ++met;
@@ -223,7 +223,7 @@ TEST(TickSingular, IsHonestFromExactlySingularSeeds) {
     Pose<double> target{};
     ASSERT_EQ(forward(arm, goal, target), Status::ok);
     TickOptions<double> options = default_tick_options(arm);
-    options.position_tolerance_m = options.rotation_tolerance_rad = 1e-6;
+    options.goal.position_tolerance_m = options.goal.rotation_tolerance_rad = 1e-6;
     TickReport<double> report{};
     const Status status = tick(arm, options, target, q, &report);
     Pose<double> reached{};

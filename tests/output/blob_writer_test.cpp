@@ -17,15 +17,15 @@
 namespace mdhcal::offline {
 namespace {
 
-Model decoded(const Blob& blob) {
-  Model model{};
+BlobContent decoded(const Blob& blob) {
+  BlobContent model{};
   EXPECT_EQ(decode(blob.data(), blob.size(), DecodeOptions{}, model), Status::ok);
   return model;
 }
 
 TEST(BlobWriter, HoldsTheRobot) {
   const Robot robot = sample_robot();
-  const Model model = decoded(make_blob(robot, sample_provenance()));
+  const BlobContent model = decoded(make_blob(robot, sample_provenance()));
   EXPECT_STREQ(model.name, "sample arm");
   EXPECT_STREQ(model.serial, "SN-0007");
   ASSERT_EQ(model.geometry.joint_count, 6);
@@ -62,7 +62,7 @@ TEST(BlobWriter, TheToolIsATargetWhereNoneIsNamed) {
   Robot robot = sample_robot();
   robot.targets.clear();
   robot.tool_p_m = Vector3{0.1, 0.2, 0.3};
-  const Model model = decoded(make_blob(robot, Provenance{}));
+  const BlobContent model = decoded(make_blob(robot, Provenance{}));
   ASSERT_EQ(model.target_count, 1);
   EXPECT_STREQ(model.target[0].name, "tool");
 }
@@ -88,7 +88,7 @@ TEST(BlobWriter, EveryKindOfArmPassesItsSelfTest) {
       joint.max = 0.1 + 3 * unit();
     }
     robot.geometry.last_T_flange.quaternion[0] = 1.0;
-    Model model = decoded(make_blob(robot, Provenance{}));
+    BlobContent model = decoded(make_blob(robot, Provenance{}));
     ASSERT_EQ(model.double_vector_count, 4);
     ASSERT_EQ(model.float_vector_count, 4);
     Arm<double> arm{};
@@ -137,25 +137,25 @@ TEST(BlobWriter, KnowsTheFamilies) {
   const std::array<Link, max_joints> ur{Link{0, 0, 0, 0.089, 0},        Link{quarter, 0, 0, 0, 0},
                                         Link{0, -0.425, 0, 0, 0},       Link{0, -0.392, 0, 0.109, 0},
                                         Link{quarter, 0, 0, 0.095, 0},  Link{-quarter, 0, 0, 0.082, 0}};
-  EXPECT_EQ(family(ur, 6), PostureFamily::parallel_axes);
+  EXPECT_EQ(family(ur, 6), ArmFamily::parallel_axes);
   std::array<Link, max_joints> wrist{Link{0, 0, 0, 0.6, 0},           Link{-quarter, 0.3, 0, 0, 0},
                                      Link{0, 1.0, 0, 0, 0},           Link{-quarter, 0.2, 0, 1.2, 0},
                                      Link{quarter, 0, 0, 0, 0},       Link{-quarter, 0, 0, 0.2, 0}};
-  EXPECT_EQ(family(wrist, 6), PostureFamily::spherical_wrist);
+  EXPECT_EQ(family(wrist, 6), ArmFamily::spherical_wrist);
   wrist[4].a_m = 0.4;
-  EXPECT_EQ(family(wrist, 6), PostureFamily::general);
-  EXPECT_EQ(family(ur, 5), PostureFamily::general);
+  EXPECT_EQ(family(wrist, 6), ArmFamily::general);
+  EXPECT_EQ(family(ur, 5), ArmFamily::general);
 }
 
-// Each border of family()'s tolerances from both sides: 5 degrees, 0.05 of the reach. What the blob declares for a
+// Each border of family_of()'s tolerances from both sides: 5 degrees, 0.05 of the reach. What the blob declares for a
 // nominal geometry is what find_solutions() uses on the corrected one.
 TEST(BlobWriter, DeclaresTheFamilyThatTheSolverUses) {
   test::Random random(17);
-  const auto expect_family = [&](const Geometry& nominal, PostureFamily declared, Family used) {
+  const auto expect_family = [&](const Geometry& nominal, ArmFamily family) {
     Robot robot;
     robot.geometry = test::with_errors(nominal, random, 1e-4, 1e-4);
     std::copy(nominal.link, nominal.link + max_joints, robot.nominal.begin());
-    EXPECT_EQ(decoded(make_blob(robot, Provenance{})).family, declared);
+    EXPECT_EQ(decoded(make_blob(robot, Provenance{})).family, family);
     Arm<double> arm{};
     ASSERT_EQ(make_arm(robot.geometry, arm), Status::ok);
     double q[max_joints] = {0.3, -1.2, 1.5, 0.4, 1.1, -0.6};
@@ -163,29 +163,27 @@ TEST(BlobWriter, DeclaresTheFamilyThatTheSolverUses) {
     ASSERT_EQ(forward(arm, q, target), Status::ok);
     Solutions<double> found{};
     ASSERT_EQ(find_solutions(arm, default_solution_options(arm), target, q, found), Status::ok);
-    EXPECT_EQ(found.family, used);
+    EXPECT_EQ(found.family, family);
   };
   for (const double side : {0.8, 1.2}) {
     const bool inside = side < 1.0;
-    const auto parallel = inside ? PostureFamily::parallel_axes : PostureFamily::general;
-    const auto wrist = inside ? PostureFamily::spherical_wrist : PostureFamily::general;
-    const Family use_parallel = inside ? Family::parallel : Family::general;
-    const Family use_wrist = inside ? Family::spherical_wrist : Family::general;
+    const auto parallel = inside ? ArmFamily::parallel_axes : ArmFamily::general;
+    const auto wrist = inside ? ArmFamily::spherical_wrist : ArmFamily::general;
     Geometry g = test::ur5();
     g.link[2].alpha_rad += side * 5 * test::deg;
-    expect_family(g, parallel, use_parallel);
+    expect_family(g, parallel);
     g = test::ur5();
     g.link[3].alpha_rad += side * 5 * test::deg;
-    expect_family(g, parallel, use_parallel);
+    expect_family(g, parallel);
     g = test::ur5();
     g.link[5].a_m = side * 2 * 0.06;  // axes 5 and 6 pass each other half as far from where they nearly meet
-    expect_family(g, parallel, use_parallel);
+    expect_family(g, parallel);
     g = test::wrist_arm();
     g.link[2].alpha_rad += side * 5 * test::deg;
-    expect_family(g, wrist, use_wrist);
+    expect_family(g, wrist);
     g = test::wrist_arm();
     g.link[4].a_m = side * 0.107;
-    expect_family(g, wrist, use_wrist);
+    expect_family(g, wrist);
   }
 }
 

@@ -36,7 +36,7 @@ TEST_P(Golden, IsWhatTheScriptMakes) {
 
 TEST_P(Golden, LoadsAndEncodesBack) {
   const std::string bytes = read_bytes(golden_path(GetParam()));
-  Model model{};
+  BlobContent model{};
   ASSERT_EQ(decode(bytes_of(bytes), bytes.size(), DecodeOptions{}, model), Status::ok);
   const Blob again = encode(model);
   EXPECT_EQ(std::memcmp(again.data(), bytes.data(), bytes.size()), 0);
@@ -63,7 +63,7 @@ std::string hexadecimal(const std::uint8_t* bytes, std::size_t size) {
 }
 
 // The decoder's view under the names of docs/blob.md.
-json as_json(const Model& m) {
+json as_json(const BlobContent& m) {
   json joints;
   json targets;
   json doubles;
@@ -126,7 +126,7 @@ TEST_P(Golden, IsReadAlikeInAnotherLanguage) {
   const auto run = tests::run_program("python3", {source + "/tests/output/read_blob.py", golden_path(GetParam())});
   ASSERT_EQ(run.exit_code, 0) << run.err;
   const std::string bytes = read_bytes(golden_path(GetParam()));
-  Model model{};
+  BlobContent model{};
   ASSERT_EQ(decode(bytes_of(bytes), bytes.size(), DecodeOptions{}, model), Status::ok);
   const json theirs = json::parse(run.out);
   const json ours = as_json(model);

@@ -67,7 +67,7 @@ class SignedBlob : public testing::Test {
     options.serial = serial;
     options.verifier = sodium_verifier(verifying_);
     options.minimum_counter = minimum_counter;
-    Model model{};
+    BlobContent model{};
     return decode(blob.data(), blob.size(), options, model);
   }
 
@@ -84,7 +84,7 @@ class SignedBlob : public testing::Test {
 TEST_F(SignedBlob, Loads) {
   EXPECT_EQ(load(blob_), Status::ok);
   EXPECT_TRUE(signature_verifies(blob_, key_.public_key));
-  Model model{};
+  BlobContent model{};
   ASSERT_EQ(decode(blob_.data(), blob_.size(), DecodeOptions{}, model), Status::ok);
   EXPECT_EQ(model.security_counter, 5U);
   EXPECT_EQ(encode(model), blob_) << "encoding keeps the signature";
@@ -110,7 +110,7 @@ TEST_F(SignedBlob, StrippedIsRefused) {
   std::fill(stripped.begin() + blob_layout::authentication, stripped.end(), std::uint8_t{0});
   repair_crc(stripped);
   EXPECT_EQ(load(stripped), Status::blob_unsigned);
-  Model model{};
+  BlobContent model{};
   EXPECT_EQ(decode(stripped.data(), stripped.size(), DecodeOptions{}, model), Status::ok) << "it is whole but for that";
 }
 
@@ -158,7 +158,7 @@ TEST_F(SignedBlob, AnotherSerialIsRefused) {
 TEST_F(SignedBlob, TruncatedIsRefused) {
   DecodeOptions options;
   options.verifier = sodium_verifier(verifying_);
-  Model model{};
+  BlobContent model{};
   for (std::size_t size = 0; size < blob_.size(); ++size) {
     ASSERT_EQ(decode(blob_.data(), size, options, model), Status::blob_size);
   }

@@ -23,9 +23,15 @@ struct Frame {
   Real position_m[3];
 };
 
+/// What make_arm() marks an arm with: storage that was not filled in, or of another precision, holds another number, save
+/// with a chance of 2^-32.
+template <class Real>
+inline constexpr std::uint32_t arm_mark = sizeof(Real) == sizeof(double) ? 0x6D1F83A5U : 0x2B9C40E7U;
+
 /// An arm prepared for the servo loop: constant after make_arm(), shared by any number of loops. Plain data.
 template <class Real>
 struct Arm {
+  std::uint32_t mark;               ///< arm_mark; every function refuses another with bad_input
   std::int32_t joint_count;         ///< 1 ... max_joints
   std::int32_t coupled;             ///< 1 if a joint coordinate depends on another joint's reading
   std::uint32_t prismatic_mask;     ///< bit i: joint i slides
@@ -40,7 +46,7 @@ struct Arm {
 
 /// Whether a geometry is valid: joint count, finite values within the bounds of geometry.hpp, signs, a unit flange
 /// quaternion, min <= max. Returns ok or bad_input.
-Status check(const Geometry& geometry) noexcept;
+Status check_geometry(const Geometry& geometry) noexcept;
 
 /// Prepares an arm. The float arm is computed in double and rounded once. Returns ok, or bad_input (arm untouched).
 Status make_arm(const Geometry& geometry, Arm<double>& arm) noexcept;

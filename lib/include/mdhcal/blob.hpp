@@ -24,14 +24,6 @@ double max_deviation_rad() noexcept;
 /// The most self-test vectors of one precision.
 inline constexpr std::size_t max_vectors = blob_layout::vector_slots;
 
-/// Which closed form holds for the nominal geometry, to the tolerances of family() (mdhcal/solutions.hpp): what posture
-/// (shoulder, elbow, wrist) means on this arm.
-enum class PostureFamily : std::int32_t {
-  general = 0,          ///< none: solutions come from restarts
-  spherical_wrist = 1,  ///< axes 4, 5 and 6 meet in a point
-  parallel_axes = 2,    ///< axes 2, 3 and 4 are parallel
-};
-
 /// A named target point.
 struct Target {
   char name[blob_layout::target_name_size];  ///< UTF-8, ends with a zero byte
@@ -78,7 +70,7 @@ struct Authentication {
 };
 
 /// The decoded content of a blob. Plain data.
-struct Model {
+struct BlobContent {
   Geometry geometry;             ///< corrected: what the arm is
   Link nominal[max_joints];      ///< what its drawing says; joints and flange as in `geometry`
   char name[blob_layout::name_size];      ///< robot, UTF-8, ends with a zero byte
@@ -87,7 +79,7 @@ struct Model {
   std::int32_t target_count;     ///< 0 ... max_targets
   Pose<double> tracker_T_base;   ///< base frame in the frame of the measurements; identity without one
   Target target[max_targets];
-  PostureFamily family;
+  ArmFamily family;
   std::uint32_t security_counter; ///< a loader refuses a blob below its stored minimum
   Tolerances tolerances;
   BlobProvenance provenance;
@@ -116,7 +108,7 @@ struct DecodeOptions {
 /// every check, or not touched. Returns ok, or in this order of checks blob_size, blob_magic, blob_version, blob_size
 /// (stated), blob_layout, blob_crc, blob_unsigned, blob_signature, blob_counter, blob_reserved, blob_value,
 /// blob_deviation (a length of the corrected geometry over max_deviation_m() from its nominal, or an angle over
-/// max_deviation_rad()), blob_serial. An ok model's geometry passes check().
-Status decode(const std::uint8_t* bytes, std::size_t size, const DecodeOptions& options, Model& model) noexcept;
+/// max_deviation_rad()), blob_serial. An ok model's geometry passes check_geometry().
+Status decode(const std::uint8_t* bytes, std::size_t size, const DecodeOptions& options, BlobContent& model) noexcept;
 
 }  // namespace mdhcal

@@ -21,7 +21,7 @@ struct CompensatorState {
   Real rate;      ///< of the progress [1/s]
 };
 
-/// Prepares both models from one set of joints. Returns ok, bad_input (a geometry does not pass check(), or the two differ
+/// Prepares both models from one set of joints. Returns ok, bad_input (a geometry does not pass check_geometry(), or the two differ
 /// in joint count, kinds, signs or couplings), bad_environment (check_environment()); `model` untouched unless ok.
 Status make_compensator(const Geometry& nominal, const Geometry& corrected, CompensatorModel<double>& model) noexcept;
 Status make_compensator(const Geometry& nominal, const Geometry& corrected, CompensatorModel<float>& model) noexcept;

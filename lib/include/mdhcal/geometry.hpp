@@ -22,6 +22,14 @@ enum class JointKind : std::int32_t {
   prismatic = 1,  ///< slides along z: the joint coordinate adds to d [m]
 };
 
+/// Which closed form holds for an arm's nominal geometry, and with it what posture (shoulder, elbow, wrist) means on it:
+/// family_of() (mdhcal/solutions.hpp) judges it, the blob declares it. Six turning joints, but for `general`.
+enum class ArmFamily : std::int32_t {
+  general = 0,          ///< none: solutions come from restarts
+  spherical_wrist = 1,  ///< axes 2 and 3 parallel, axes 4, 5 and 6 meeting in a point
+  parallel_axes = 2,    ///< axes 2, 3 and 4 parallel, axes 5 and 6 meeting
+};
+
 /// Modified Denavit-Hartenberg parameters of one link with Hayati's beta:
 /// A = Rot_x(alpha) Trans_x(a) Rot_z(theta) Trans_z(d) Rot_y(beta)   (Li 2022, Eq. 1).
 struct Link {
@@ -44,7 +52,7 @@ struct Joint {
 };
 
 /// The geometry of one arm: base_T_flange(q) = A_1(q) ... A_N(q) flange   (Li 2022, Eq. 3 with its factors).
-/// Joint coordinate i = sign_i q_i + sum_j coupling_ij q_j. Plain data; check() says whether it is valid.
+/// Joint coordinate i = sign_i q_i + sum_j coupling_ij q_j. Plain data; check_geometry() says whether it is valid.
 struct Geometry {
   std::int32_t joint_count;     ///< 1 ... max_joints
   std::int32_t reserved;        ///< 0

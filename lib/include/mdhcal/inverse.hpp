@@ -13,20 +13,38 @@ enum class Task : std::int32_t {
   planar = 3,         ///< x and y of the base frame, and the turn about its z axis
 };
 
+/// When an inverse is done, and what matters where not all of its pose can be met.
+template <class Real>
+struct GoalOptions {
+  Real position_tolerance_m;    ///< met if the position error is no larger; > 0 [m]
+  Real rotation_tolerance_rad;  ///< and the rotation error likewise; > 0 [rad]
+  Real position_weight;         ///< weight of the position error over the reach where not all can be met; > 0 [1]
+  Real rotation_weight;         ///< weight of the rotation error there; > 0 [1]
+  Task task;
+};
+
+/// How far one tick may move the joints.
+template <class Real>
+struct StepLimits {
+  Real max_step[max_joints];    ///< bound of |result - last joints|, each joint, for the whole tick; > 0 [rad] or [m]
+};
+
+/// Where joints that the task leaves free should go.
+template <class Real>
+struct PostureOptions {
+  Real q[max_joints];           ///< [rad] or [m]
+  Real gain;                    ///< part of the way to it in one tick, 0 (off) ... 1
+};
+
 /// What one servo tick may do. Take default_tick_options() and change what matters.
 template <class Real>
 struct TickOptions {
-  Real position_tolerance_m;    ///< met if the position error is no larger; > 0 [m]
-  Real rotation_tolerance_rad;  ///< and the rotation error likewise; > 0 [rad]
-  Real max_step[max_joints];    ///< bound of |result - last joints|, each joint, for the whole tick; > 0 [rad] or [m]
-  Real position_weight;         ///< weight of the position error over the reach where not all can be met; > 0 [1]
-  Real rotation_weight;         ///< weight of the rotation error there; > 0 [1]
+  GoalOptions<Real> goal;
+  StepLimits<Real> limits;
+  PostureOptions<Real> posture;
   std::int32_t max_iterations;  ///< bound of a tick's work, 1 ... max_tick_iterations: an iteration is an evaluation of
                                 ///< the arm and a factorization of its equations, all else counts in proportion; where
                                 ///< the pose cannot be met up to seven more
-  Task task;
-  Real posture[max_joints];     ///< where joints that the task leaves free should go [rad] or [m]
-  Real posture_gain;            ///< part of the way to it in one tick, 0 (off) ... 1
 };
 
 inline constexpr std::int32_t max_tick_iterations = 64;

@@ -23,7 +23,7 @@ inline constexpr double self_test_offset = 0.015625;
 /// time of a few ticks: once, outside the servo loop.
 /// Returns ok (every bit is the host's), self_test_tolerance (the blob names another arithmetic id, and all is within
 /// the tolerance), self_test_failed (a vector is missed, or the blob holds none of this precision).
-Status self_test(const Model& model, const Arm<double>& arm) noexcept;
-Status self_test(const Model& model, const Arm<float>& arm) noexcept;
+Status self_test(const BlobContent& model, const Arm<double>& arm) noexcept;
+Status self_test(const BlobContent& model, const Arm<float>& arm) noexcept;
 
 }  // namespace mdhcal

@@ -10,17 +10,10 @@ inline constexpr std::int32_t max_solutions = 16;
 /// The most restarts that one call may use.
 inline constexpr std::int32_t max_restarts = 400;
 
-/// Where starting values come from.
-enum class Family : std::int32_t {
-  general = 0,         ///< restarts from fixed pseudo-random joints
-  parallel = 1,        ///< six turning joints, axes 2, 3, 4 parallel, axes 5 and 6 meeting
-  spherical_wrist = 2, ///< six turning joints, axes 2 and 3 parallel, axes 4, 5, 6 meeting in a point
-};
-
 /// How to look for solutions. Take default_solution_options() and change what matters.
 template <class Real>
 struct SolutionOptions {
-  TickOptions<Real> tick;  ///< tolerances and task; step limits and posture are not used
+  GoalOptions<Real> goal;  ///< tolerances and task; the weights are not used
   std::int32_t restarts;   ///< 0 ... max_restarts: how many, beyond the closed form's values
 };
 
@@ -28,7 +21,7 @@ struct SolutionOptions {
 template <class Real>
 struct Solutions {
   std::int32_t count;                     ///< 0 ... max_solutions
-  Family family;
+  ArmFamily family;
   Real q[max_solutions][max_joints];      ///< readings [rad] or [m], each turn the allowed one nearest to the posture
   Real distance[max_solutions];           ///< largest joint difference from the posture [rad, or lengths of the arm]
 };
@@ -39,8 +32,8 @@ SolutionOptions<float> default_solution_options(const Arm<float>& arm) noexcept;
 
 /// The family whose closed form gives starting values: axes count as parallel within 5 degrees and as meeting within
 /// 0.05 of the reach, since the starting values are refined on the arm as it is.
-Family family(const Arm<double>& arm) noexcept;
-Family family(const Arm<float>& arm) noexcept;
+ArmFamily family_of(const Arm<double>& arm) noexcept;
+ArmFamily family_of(const Arm<float>& arm) noexcept;
 
 /// Every solution of the pose within the joint limits, counted modulo full turns: the posture and the closed form of the
 /// family (Paden 1985; Kahan; Elias, Wen 2022), which treats the arm as if its axes were exactly parallel and met

@@ -46,6 +46,12 @@ enum class [[nodiscard]] Status : std::int32_t {
 };
 
 /// The status in words: a string of static storage, never null, one line, no full stop.
-const char* text(Status status) noexcept;
+const char* status_text(Status status) noexcept;
+
+/// Whether what was asked for may be used: after a tick the joints, velocities or pose, which keep their limits though they
+/// may be short of the target; after load() the arm.
+constexpr bool usable(Status status) noexcept {
+  return (status >= Status::ok && status <= Status::not_converged) || status == Status::self_test_tolerance;
+}
 
 }  // namespace mdhcal

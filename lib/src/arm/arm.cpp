@@ -71,9 +71,10 @@ void to_matrix(const double (&q)[4], Real (&r)[9]) {
 
 template <class Real>
 Status prepare(const Geometry& geometry, Arm<Real>& arm) {
-  const Status status = check(geometry);
+  const Status status = check_geometry(geometry);
   if (status != Status::ok) return status;
   arm = Arm<Real>{};
+  arm.mark = arm_mark<Real>;
   arm.joint_count = geometry.joint_count;
   double reach = 0.0;
   for (double p : geometry.last_T_flange.position_m) reach += magnitude(p);
@@ -122,7 +123,7 @@ Status prepare(const Geometry& geometry, Arm<Real>& arm) {
 
 }  // namespace
 
-Status check(const Geometry& geometry) noexcept {
+Status check_geometry(const Geometry& geometry) noexcept {
   if (geometry.joint_count < 1 || geometry.joint_count > static_cast<std::int32_t>(max_joints)) {
     return Status::bad_input;
   }

@@ -20,7 +20,7 @@ void evaluate(const Arm<float>& arm, const float* q, Frame<float>& base_T_flange
 void to_readings(const Arm<double>& arm, Jacobian<double>& jacobian) noexcept;
 void to_readings(const Arm<float>& arm, Jacobian<float>& jacobian) noexcept;
 
-/// Whether all readings are finite and within max_reading.
+/// Whether make_arm() made the arm, and all readings are finite and within max_reading.
 bool readings_valid(const Arm<double>& arm, const double* q) noexcept;
 bool readings_valid(const Arm<float>& arm, const float* q) noexcept;
 

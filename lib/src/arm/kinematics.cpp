@@ -120,6 +120,7 @@ constexpr Frame<Real> identity{{1, 0, 0, 0, 1, 0, 0, 0, 1}, {0, 0, 0}};
 }  // namespace
 
 bool readings_valid(const Arm<Real>& arm, const Real* q) noexcept {
+  if (arm.mark != arm_mark<Real>) return false;
   for (std::int32_t i = 0; i < arm.joint_count; ++i) {
     if (!__builtin_islessequal(magnitude(q[i]), reading_bound)) return false;  // as within() does, in one comparison
   }

@@ -205,14 +205,14 @@ bool near(const Link& corrected, const Link& nominal) {
 Status check_geometry(const std::uint8_t* bytes) {
   Geometry geometry;
   load_geometry(bytes, geometry);
-  if (check(geometry) != Status::ok) return Status::blob_value;
+  if (check_geometry(geometry) != Status::ok) return Status::blob_value;
   bool close = true;
   for (std::int32_t i = 0; i < geometry.joint_count; ++i) {
     const Link corrected = geometry.link[i];
     geometry.link[i] = load_link(bytes, static_cast<std::size_t>(i), at::joint::nominal);
     close = close && near(corrected, geometry.link[i]);
   }
-  if (check(geometry) != Status::ok) return Status::blob_value;
+  if (check_geometry(geometry) != Status::ok) return Status::blob_value;
   return close ? Status::ok : Status::blob_deviation;
 }
 
@@ -226,7 +226,7 @@ bool serial_is(const std::uint8_t* bytes, const char* serial) {
 
 }  // namespace
 
-Status decode(const std::uint8_t* bytes, std::size_t size, const DecodeOptions& options, Model& model) noexcept {
+Status decode(const std::uint8_t* bytes, std::size_t size, const DecodeOptions& options, BlobContent& model) noexcept {
   Status status = check_frame(bytes, size);
   if (status == Status::ok) status = check_authentication(bytes, options);
   if (status == Status::ok) status = check_counts(bytes);

@@ -90,7 +90,7 @@ void load_geometry(const std::uint8_t* bytes, Geometry& geometry) noexcept {
   load_pose(bytes + at::last_T_flange, geometry.last_T_flange);
 }
 
-void load_model(const std::uint8_t* bytes, Model& model) noexcept {
+void load_model(const std::uint8_t* bytes, BlobContent& model) noexcept {
   load_geometry(bytes, model.geometry);
   for (std::size_t i = 0; i < max_joints; ++i) model.nominal[i] = load_link(bytes, i, at::joint::nominal);
   std::memcpy(model.name, bytes + at::name, at::name_size);
@@ -104,7 +104,7 @@ void load_model(const std::uint8_t* bytes, Model& model) noexcept {
     std::memcpy(model.target[i].name, record, at::target_name_size);
     for (std::size_t k = 0; k < 3; ++k) model.target[i].flange_p_m[k] = load_f64(record + at::target_point + 8 * k);
   }
-  model.family = static_cast<PostureFamily>(load_i32(bytes + at::family));
+  model.family = static_cast<ArmFamily>(load_i32(bytes + at::family));
   model.security_counter = load_u32(bytes + at::security_counter);
   model.tolerances = {load_f64(bytes + at::tolerances), load_f64(bytes + at::tolerances + 8),
                       load_f32(bytes + at::float_tolerances), load_f32(bytes + at::float_tolerances + 4)};

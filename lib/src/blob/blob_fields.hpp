@@ -36,6 +36,6 @@ Link load_link(const std::uint8_t* bytes, std::size_t joint, std::size_t which) 
 void load_geometry(const std::uint8_t* bytes, Geometry& geometry) noexcept;
 
 /// The whole model of a blob that has passed every check.
-void load_model(const std::uint8_t* bytes, Model& model) noexcept;
+void load_model(const std::uint8_t* bytes, BlobContent& model) noexcept;
 
 }  // namespace mdhcal

@@ -21,7 +21,7 @@ struct Share {
 };
 
 template <class Precision>
-Share<Precision> share_of(const Model& model) {
+Share<Precision> share_of(const BlobContent& model) {
   const Tolerances& tolerances = model.tolerances;
   if constexpr (sizeof(Precision) == sizeof(double)) {
     return {model.double_vector, model.double_vector_count, tolerances.position_m, tolerances.rotation_rad,
@@ -56,8 +56,8 @@ Status run(const SelfTestVector<Real>& vector, const Arm<Real>& arm, const Share
     q[i] = vector.q[i] + (i % 2 == 0 ? offset : -offset);
   }
   TickOptions<Real> options = default_tick_options(arm);
-  options.position_tolerance_m = share.position_tolerance_m;
-  options.rotation_tolerance_rad = share.rotation_tolerance_rad;
+  options.goal.position_tolerance_m = share.position_tolerance_m;
+  options.goal.rotation_tolerance_rad = share.rotation_tolerance_rad;
   const Status status = tick(arm, options, vector.base_T_flange, q);
   bool passed = true;
   if (bits) {
@@ -78,7 +78,7 @@ Status run(const SelfTestVector<Real>& vector, const Arm<Real>& arm, const Share
 
 }  // namespace
 
-Status self_test(const Model& model, const Arm<Real>& arm) noexcept {
+Status self_test(const BlobContent& model, const Arm<Real>& arm) noexcept {
   const Share<Real> share = share_of<Real>(model);
   if (share.count < 1 || share.count > static_cast<std::int32_t>(max_vectors)) return Status::self_test_failed;
   const bool bits = model.arithmetic_id == arithmetic_id;

@@ -30,7 +30,7 @@ struct Screws {
   Vector point[6];
   Vector meet;     ///< where the last two or three axes meet, nearly
   Frame<Real> zero;
-  Family family;
+  ArmFamily family;
 };
 
 inline Vector turned(const Vector& axis, Real angle, const Vector& p) {
@@ -82,8 +82,8 @@ inline Real line_distance(const Vector& point, const Vector& p, const Vector& u)
 
 /// Reads the screws off the arm at zero readings.
 inline void read_screws(const Arm<Real>& arm, Screws& screws) {
-  screws.family = Family::general;
-  if (arm.joint_count != 6 || arm.prismatic_mask != 0U) return;
+  screws.family = ArmFamily::general;
+  if (arm.mark != arm_mark<Real> || arm.joint_count != 6 || arm.prismatic_mask != 0U) return;
   const Real zero[max_joints] = {};
   Jacobian<Real> jacobian;
   evaluate(arm, zero, screws.zero, jacobian);
@@ -105,9 +105,9 @@ inline void read_screws(const Arm<Real>& arm, Screws& screws) {
   if (!meets) return;
   screws.meet = last;
   if (length(cross(k[2], k[3])) < parallel && length(cross(k[3], k[4])) > Real(0.5)) {
-    screws.family = Family::parallel;
+    screws.family = ArmFamily::parallel_axes;
   } else if (line_distance(last, o[3], k[3]) < near && length(cross(k[3], k[4])) > Real(0.5)) {
-    screws.family = Family::spherical_wrist;
+    screws.family = ArmFamily::spherical_wrist;
   }
 }
 
@@ -178,7 +178,7 @@ inline void closed_form(const Screws& s, const Frame<Real>& target, const Depart
   for (const Real root : first) {
     const Real c1 = root + departure.base_turn;
     const Vector lowered = o[0] + turned(k[0], -c1, moved - o[0]);
-    if (s.family == Family::parallel) {
+    if (s.family == ArmFamily::parallel_axes) {
       const Vector h_flange = row_of(gt, turned(k[0], c1, h));
       Real fifth[2];
       const Real half = angles_to_plane(h, k[4], k[5], inner(h_flange, k[5]), spread, fifth);

@@ -291,14 +291,14 @@ inline Real callers_weight(const TickState& state) {
   search.state = &state;
   search.problem.rows = task_rank(state.options->task);
   search.problem.columns = state.arm->joint_count;
-  search.problem.budget = per_iteration * state.options->max_iterations;
+  search.problem.budget = per_iteration * state.tick->max_iterations;
   search.rotation_weight = 1;
   search.predicted = 0;
   search.met = false;
   search.solved = false;
   if (begin(search, bend)) return Status::ok;
   search.folded = bend.of_last && bends(bend);
-  const bool posture = state.options->posture_gain > Real{0} && search.problem.columns > search.problem.rows;
+  const bool posture = state.tick->posture.gain > Real{0} && search.problem.columns > search.problem.rows;
   search.problem.damping = step_damping(search, care);
   set_pull(search, false);
   const Chance found = posture ? Chance::some : chance(search, bend);

@@ -4,7 +4,7 @@
 #include "number/real.hpp"
 // The tick's parts see Real.
 #include "inverse/constrained_tick.hpp"
-#include "inverse/tick_valid.hpp"
+#include "inverse/goal_valid.hpp"
 #include "number/compare.hpp"
 
 namespace mdhcal {
@@ -16,32 +16,12 @@ constexpr Real largest = static_cast<Real>(max_reading);
 bool positive(Real x) { return within(Real{0}, x, Real(1e6)) && x > Real{0}; }
 
 bool valid(const TickOptions<Real>& options, std::int32_t joints) {
-  if (!positive(options.position_tolerance_m) || !positive(options.rotation_tolerance_rad)) return false;
-  if (!positive(options.position_weight) || !positive(options.rotation_weight)) return false;
+  if (!goal_valid(options.goal)) return false;
   if (options.max_iterations < 1 || options.max_iterations > max_tick_iterations) return false;
-  if (options.task != Task::pose && options.task != Task::position && options.task != Task::position_axis &&
-      options.task != Task::planar) {
-    return false;
-  }
-  if (!within(Real{0}, options.posture_gain, Real{1})) return false;
+  if (!within(Real{0}, options.posture.gain, Real{1})) return false;
   for (std::int32_t j = 0; j < joints; ++j) {
-    if (!positive(options.max_step[j])) return false;
-    if (options.posture_gain > Real{0} && !within(-largest, options.posture[j], largest)) return false;
-  }
-  return true;
-}
-
-bool valid(const Pose<Real>& pose) {
-  constexpr Real tolerance = sizeof(Real) == sizeof(double) ? Real(1e-6) : Real(1e-5);
-  const Real* c = pose.quaternion;
-  for (int k = 0; k < 4; ++k) {
-    if (!within(Real{-2}, c[k], Real{2})) return false;
-  }
-  const Real square = (c[0] * c[0] + c[1] * c[1]) + (c[2] * c[2] + c[3] * c[3]);
-  if (!(magnitude(square - Real{1}) <= Real{2} * tolerance)) return false;
-  constexpr Real furthest = static_cast<Real>(max_target_m);
-  for (int k = 0; k < 3; ++k) {
-    if (!within(-furthest, pose.position_m[k], furthest)) return false;
+    if (!positive(options.limits.max_step[j])) return false;
+    if (options.posture.gain > Real{0} && !within(-largest, options.posture.q[j], largest)) return false;
   }
   return true;
 }
@@ -51,7 +31,7 @@ void set_bounds(TickState& state, std::int32_t j, Real q) {
   constexpr Real epsilon = sizeof(Real) == sizeof(double) ? Real(2.3e-16) : Real(1.2e-7);
   const Arm<Real>& arm = *state.arm;
   const std::uint32_t bit = 1U << static_cast<std::uint32_t>(j);
-  const Real max_step = state.options->max_step[j];
+  const Real max_step = state.tick->limits.max_step[j];
   const Real reach = max_step - epsilon * (magnitude(q) + max_step);
   Real low = reach > Real{0} ? q - reach : q;
   Real high = reach > Real{0} ? q + reach : q;
@@ -75,28 +55,47 @@ std::uint32_t outside_limits(const Arm<Real>& arm, const Real* q) {
 
 }  // namespace
 
-bool tick_valid(const Arm<Real>& arm, const TickOptions<Real>& options, const Pose<Real>& target) noexcept {
-  return valid(options, arm.joint_count) && valid(target);
+bool goal_valid(const GoalOptions<Real>& goal) noexcept {
+  if (!positive(goal.position_tolerance_m) || !positive(goal.rotation_tolerance_rad)) return false;
+  if (!positive(goal.position_weight) || !positive(goal.rotation_weight)) return false;
+  return goal.task == Task::pose || goal.task == Task::position || goal.task == Task::position_axis ||
+         goal.task == Task::planar;
 }
 
-TickOptions<Real> default_tick_options(const Arm<Real>& arm) noexcept {
+bool target_valid(const Pose<Real>& target) noexcept {
+  constexpr Real tolerance = sizeof(Real) == sizeof(double) ? Real(1e-6) : Real(1e-5);
+  const Real* c = target.quaternion;
+  for (int k = 0; k < 4; ++k) {
+    if (!within(Real{-2}, c[k], Real{2})) return false;
+  }
+  const Real square = (c[0] * c[0] + c[1] * c[1]) + (c[2] * c[2] + c[3] * c[3]);
+  if (!(magnitude(square - Real{1}) <= Real{2} * tolerance)) return false;
+  constexpr Real furthest = static_cast<Real>(max_target_m);
+  for (int k = 0; k < 3; ++k) {
+    if (!within(-furthest, target.position_m[k], furthest)) return false;
+  }
+  return true;
+}
+
+TickOptions<Real> default_tick_options(const Arm<Real>&) noexcept {
   TickOptions<Real> options{};
-  options.position_tolerance_m = sizeof(Real) == sizeof(double) ? Real(1e-10) : Real(5e-6);
-  options.rotation_tolerance_rad = options.position_tolerance_m;
-  for (std::int32_t j = 0; j < arm.joint_count; ++j) options.max_step[j] = largest;
-  options.position_weight = 1;
-  options.rotation_weight = Real(0.001);
+  options.goal.position_tolerance_m = sizeof(Real) == sizeof(double) ? Real(1e-10) : Real(5e-6);
+  options.goal.rotation_tolerance_rad = options.goal.position_tolerance_m;
+  for (Real& step : options.limits.max_step) step = largest;
+  options.goal.position_weight = 1;
+  options.goal.rotation_weight = Real(0.001);
   options.max_iterations = 11;
-  options.task = Task::pose;
+  options.goal.task = Task::pose;
   return options;
 }
 
 Status tick(const Arm<Real>& arm, const TickOptions<Real>& options, const Pose<Real>& base_T_flange, Real* q,
             TickReport<Real>* report) noexcept {
-  if (!tick_valid(arm, options, base_T_flange) || !readings_valid(arm, q)) return Status::bad_input;
+  if (!readings_valid(arm, q) || !valid(options, arm.joint_count) || !target_valid(base_T_flange)) return Status::bad_input;
   TickState state;
   state.arm = &arm;
-  state.options = &options;
+  state.options = &options.goal;
+  state.tick = &options;
   to_frame(base_T_flange, state.target);
   state.length_m = length_unit(arm);
   state.last = q;

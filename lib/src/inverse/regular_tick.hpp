@@ -53,7 +53,7 @@ inline bool factor_jacobian(const TickState& state, const Jacobian<Real>& coordi
   Real last_size = 0;
   Real longest_allowed = regular_step;
   bool fresh = true;
-  for (std::int32_t round = 0; round < 8 && state.evaluations < state.options->max_iterations; ++round) {
+  for (std::int32_t round = 0; round < 8 && state.evaluations < state.tick->max_iterations; ++round) {
     PoseError& error = state.error;
     ++state.evaluations;
     if (fresh) {

@@ -225,7 +225,7 @@ inline void set_pull(Search& search, bool posture) {
   constexpr Real longest = Real(0.1);
   for (std::int32_t j = 0; j < state.arm->joint_count; ++j) {
     const Real way =
-        posture ? (state.options->posture[j] - state.q[j]) / joint_unit(state, j) * state.options->posture_gain : Real{0};
+        posture ? (state.tick->posture.q[j] - state.q[j]) / joint_unit(state, j) * state.tick->posture.gain : Real{0};
     search.problem.pull[j] = way > longest ? longest : (way < -longest ? -longest : way);
   }
 }

@@ -5,7 +5,7 @@
 #include "inverse/closed_form.hpp"
 #include "inverse/levenberg.hpp"
 #include "number/real.hpp"
-#include "inverse/tick_valid.hpp"
+#include "inverse/goal_valid.hpp"
 
 namespace mdhcal {
 
@@ -214,7 +214,7 @@ void search_all(const Search& search, std::int32_t restarts, bool first_only, So
   Real q[max_joints];
   for (std::int32_t j = 0; j < search.goal.arm->joint_count; ++j) q[j] = search.posture[j];
   consider(search, q, found);
-  if (screws.family != Family::general && search.goal.options->task == Task::pose) {
+  if (screws.family != ArmFamily::general && search.goal.options->task == Task::pose) {
     try_closed_form(search, screws, first_only, found);
   }
   try_restarts(search, restarts, first_only, found);
@@ -222,12 +222,12 @@ void search_all(const Search& search, std::int32_t restarts, bool first_only, So
 
 bool prepare(const Arm<Real>& arm, const SolutionOptions<Real>& options, const Pose<Real>& target, const Real* posture,
              Search& search) {
-  if (!tick_valid(arm, options.tick, target) || !readings_valid(arm, posture)) return false;
+  if (!readings_valid(arm, posture) || !goal_valid(options.goal) || !target_valid(target)) return false;
   if (options.restarts < 0 || options.restarts > max_restarts) return false;
   search.posture = posture;
   search.periodic_mask = periodic_joints(arm);
   search.goal.arm = &arm;
-  search.goal.options = &options.tick;
+  search.goal.options = &options.goal;
   search.goal.length_m = length_unit(arm);
   to_frame(target, search.goal.target);
   return true;
@@ -235,7 +235,7 @@ bool prepare(const Arm<Real>& arm, const SolutionOptions<Real>& options, const P
 
 }  // namespace
 
-Family family(const Arm<Real>& arm) noexcept {
+ArmFamily family_of(const Arm<Real>& arm) noexcept {
   Screws screws;
   read_screws(arm, screws);
   return screws.family;
@@ -243,8 +243,8 @@ Family family(const Arm<Real>& arm) noexcept {
 
 SolutionOptions<Real> default_solution_options(const Arm<Real>& arm) noexcept {
   SolutionOptions<Real> options{};
-  options.tick = default_tick_options(arm);
-  options.restarts = family(arm) == Family::general ? 100 : 0;
+  options.goal = default_tick_options(arm).goal;
+  options.restarts = family_of(arm) == ArmFamily::general ? 100 : 0;
   return options;
 }
 

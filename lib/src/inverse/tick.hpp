@@ -14,7 +14,7 @@ namespace {
 /// What joints are searched for.
 struct Goal {
   const Arm<Real>* arm;
-  const TickOptions<Real>* options;      ///< tolerances and task
+  const GoalOptions<Real>* options;      ///< tolerances and task
   Frame<Real> target;
   Real length_m;                         ///< what lengths are divided by
 };
@@ -27,6 +27,7 @@ struct Look {
 
 /// A tick under way. Joints in readings [rad] or [m].
 struct TickState : Goal {
+  const TickOptions<Real>* tick;
   Real low[max_joints], high[max_joints]; ///< where this tick may leave the joints; last joints are inside
   const Real* last;                      ///< last joints
   Real q[max_joints];                    ///< in: last joints; out: the result

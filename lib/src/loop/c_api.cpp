@@ -40,19 +40,19 @@ static_assert(alignof(CModel) <= alignof(C(model)) && alignof(CState) <= alignof
 static_assert(MDHCAL_MAX_JOINTS == max_joints && MDHCAL_MAX_SOLUTIONS == max_solutions);
 
 // Whether storage may hold a CModel or a CState: a C program can make a pointer of any address.
-bool usable(const void* storage) {
+bool aligned(const void* storage) {
   return storage != nullptr && reinterpret_cast<std::uintptr_t>(storage) % alignof(double) == 0;
 }
 
 // Bytes that memcpy made a CModel of; void on the way, since nothing else is known of the storage.
 const CModel* model_in(const C(model)* storage) {
-  if (!usable(storage)) return nullptr;
+  if (!aligned(storage)) return nullptr;
   const CModel* model = static_cast<const CModel*>(static_cast<const void*>(storage));
   return model->mark == model_mark ? model : nullptr;
 }
 
 bool read_state(const C(state)* storage, CState& state) {
-  if (!usable(storage)) return false;
+  if (!aligned(storage)) return false;
   std::memcpy(&state, storage, sizeof state);
   return state.mark == state_mark;
 }
@@ -72,37 +72,35 @@ void to_c(const Pose<Real>& pose, C(pose)& out) {
   for (int k = 0; k < 3; ++k) out.position_m[k] = pose.position_m[k];
 }
 
-TickOptions<Real> from_c(const C(options)& options) {
+GoalOptions<Real> from_c(const C(goal_options)& goal) {
+  return {goal.position_tolerance_m, goal.rotation_tolerance_rad, goal.position_weight, goal.rotation_weight,
+          static_cast<Task>(goal.task)};
+}
+
+TickOptions<Real> from_c(const C(tick_options)& options) {
   TickOptions<Real> out;
-  out.position_tolerance_m = options.position_tolerance_m;
-  out.rotation_tolerance_rad = options.rotation_tolerance_rad;
-  out.position_weight = options.position_weight;
-  out.rotation_weight = options.rotation_weight;
-  out.max_iterations = options.max_iterations;
-  out.task = static_cast<Task>(options.task);
-  out.posture_gain = options.posture_gain;
+  out.goal = from_c(options.goal);
   for (std::size_t j = 0; j < max_joints; ++j) {
-    out.max_step[j] = options.max_step[j];
-    out.posture[j] = options.posture[j];
+    out.limits.max_step[j] = options.limits.max_step[j];
+    out.posture.q[j] = options.posture.q[j];
   }
+  out.posture.gain = options.posture.gain;
+  out.max_iterations = options.max_iterations;
   return out;
 }
 
-void to_c(const TickOptions<Real>& options, C(options)& out) {
-  out.position_tolerance_m = options.position_tolerance_m;
-  out.rotation_tolerance_rad = options.rotation_tolerance_rad;
-  out.position_weight = options.position_weight;
-  out.rotation_weight = options.rotation_weight;
-  out.max_iterations = options.max_iterations;
-  out.task = static_cast<std::int32_t>(options.task);
-  out.posture_gain = options.posture_gain;
+void to_c(const TickOptions<Real>& options, C(tick_options)& out) {
+  out.goal = {options.goal.position_tolerance_m, options.goal.rotation_tolerance_rad, options.goal.position_weight,
+              options.goal.rotation_weight, static_cast<std::int32_t>(options.goal.task)};
   for (std::size_t j = 0; j < max_joints; ++j) {
-    out.max_step[j] = options.max_step[j];
-    out.posture[j] = options.posture[j];
+    out.limits.max_step[j] = options.limits.max_step[j];
+    out.posture.q[j] = options.posture.q[j];
   }
+  out.posture.gain = options.posture.gain;
+  out.max_iterations = options.max_iterations;
 }
 
-std::int32_t finish(Status status, const TickReport<Real>& report, C(report)* out) {
+std::int32_t finish(Status status, const TickReport<Real>& report, C(tick_report)* out) {
   if (out != nullptr && status != Status::bad_input) {
     out->position_error_m = report.position_error_m;
     out->rotation_error_rad = report.rotation_error_rad;
@@ -129,7 +127,7 @@ Status load(const std::uint8_t* blob, std::size_t blob_size, const mdhcal_demand
     options.minimum_counter = copy.minimum_counter;
     if (copy.verify != nullptr) options.verifier = {verify_for_c, &copy};
   }
-  Model model;
+  BlobContent model;
   const Status status = decode(blob, blob_size, options, model);
   if (status != Status::ok) return status;
   Geometry nominal = model.geometry;
@@ -148,7 +146,7 @@ using namespace mdhcal;
 
 std::int32_t C(load)(C(model)* model, std::size_t model_size, std::uint32_t abi_version, const std::uint8_t* blob,
                      std::size_t blob_bytes, const mdhcal_demands* demands) {
-  if (!usable(model) || blob == nullptr || model_size != sizeof *model || abi_version != MDHCAL_ABI_VERSION) {
+  if (!aligned(model) || blob == nullptr || model_size != sizeof *model || abi_version != MDHCAL_ABI_VERSION) {
     return refused;
   }
   CModel loaded;
@@ -187,7 +185,7 @@ std::int32_t C(forward)(const C(model)* model, std::int32_t which, const Real* q
 
 std::int32_t C(start)(C(state)* state, std::size_t state_size, const C(model)* model, std::int32_t which) {
   const CModel* m = model_in(model);
-  if (m == nullptr || !usable(state) || state_size != sizeof *state) return refused;
+  if (m == nullptr || !aligned(state) || state_size != sizeof *state) return refused;
   if (which != MDHCAL_NOMINAL && which != MDHCAL_CORRECTED) return refused;
   const CState made{state_mark, rest(m->models, which == MDHCAL_CORRECTED)};
   std::memcpy(state, &made, sizeof made);
@@ -210,15 +208,15 @@ std::int32_t C(advance)(C(state)* state, Real period_s) {
   return number(status);
 }
 
-std::int32_t C(default_options)(const C(model)* model, C(options)* options) {
+std::int32_t C(default_tick_options)(const C(model)* model, C(tick_options)* options) {
   const CModel* m = model_in(model);
   if (m == nullptr || options == nullptr) return refused;
   to_c(default_tick_options(m->models.corrected), *options);
   return number(Status::ok);
 }
 
-std::int32_t C(pose_to_joints)(const C(model)* model, const C(state)* state, const C(options)* options,
-                               const C(pose)* base_T_flange, Real* q, C(report)* report) {
+std::int32_t C(pose_to_joints)(const C(model)* model, const C(state)* state, const C(tick_options)* options,
+                               const C(pose)* base_T_flange, Real* q, C(tick_report)* report) {
   const CModel* m = model_in(model);
   CState s;
   if (m == nullptr || !read_state(state, s) || options == nullptr || base_T_flange == nullptr || q == nullptr) {
@@ -228,8 +226,8 @@ std::int32_t C(pose_to_joints)(const C(model)* model, const C(state)* state, con
   return finish(pose_to_joints(m->models, s.ramp, from_c(*options), from_c(*base_T_flange), q, &done), done, report);
 }
 
-std::int32_t C(joints_to_joints)(const C(model)* model, const C(state)* state, const C(options)* options,
-                                 const Real* nominal_q, Real* q, C(report)* report) {
+std::int32_t C(joints_to_joints)(const C(model)* model, const C(state)* state, const C(tick_options)* options,
+                                 const Real* nominal_q, Real* q, C(tick_report)* report) {
   const CModel* m = model_in(model);
   CState s;
   if (m == nullptr || !read_state(state, s) || options == nullptr || nominal_q == nullptr || q == nullptr) {
@@ -239,8 +237,8 @@ std::int32_t C(joints_to_joints)(const C(model)* model, const C(state)* state, c
   return finish(joints_to_joints(m->models, s.ramp, from_c(*options), nominal_q, q, &done), done, report);
 }
 
-std::int32_t C(pose_to_pose)(const C(model)* model, const C(state)* state, const C(options)* options,
-                             const C(pose)* base_T_flange, Real* q, C(pose)* command, C(report)* report) {
+std::int32_t C(pose_to_pose)(const C(model)* model, const C(state)* state, const C(tick_options)* options,
+                             const C(pose)* base_T_flange, Real* q, C(pose)* command, C(tick_report)* report) {
   const CModel* m = model_in(model);
   CState s;
   if (m == nullptr || !read_state(state, s) || options == nullptr || base_T_flange == nullptr || q == nullptr ||
@@ -263,13 +261,13 @@ std::int32_t C(joint_velocities)(const C(model)* model, const Real* q, const Rea
   return number(joint_velocities(m->models.corrected, q, flange_velocity, max_velocity, velocity));
 }
 
-std::int32_t C(find_solutions)(const C(model)* model, const C(options)* options, std::int32_t restarts,
+std::int32_t C(find_solutions)(const C(model)* model, const C(goal_options)* goal, std::int32_t restarts,
                                const C(pose)* base_T_flange, const Real* posture, C(solutions)* solutions) {
   const CModel* m = model_in(model);
-  if (m == nullptr || options == nullptr || base_T_flange == nullptr || posture == nullptr || solutions == nullptr) {
+  if (m == nullptr || goal == nullptr || base_T_flange == nullptr || posture == nullptr || solutions == nullptr) {
     return refused;
   }
-  const SolutionOptions<Real> how{from_c(*options), restarts};
+  const SolutionOptions<Real> how{from_c(*goal), restarts};
   Solutions<Real> found;
   const Status status = find_solutions(m->models.corrected, how, from_c(*base_T_flange), posture, found);
   if (status == Status::bad_input) return refused;
@@ -281,11 +279,11 @@ std::int32_t C(find_solutions)(const C(model)* model, const C(options)* options,
   return number(status);
 }
 
-std::int32_t C(cold_start)(const C(model)* model, const C(options)* options, std::int32_t restarts,
+std::int32_t C(cold_start)(const C(model)* model, const C(goal_options)* goal, std::int32_t restarts,
                            const C(pose)* base_T_flange, Real* q) {
   const CModel* m = model_in(model);
-  if (m == nullptr || options == nullptr || base_T_flange == nullptr || q == nullptr) return refused;
-  const SolutionOptions<Real> how{from_c(*options), restarts};
+  if (m == nullptr || goal == nullptr || base_T_flange == nullptr || q == nullptr) return refused;
+  const SolutionOptions<Real> how{from_c(*goal), restarts};
   return number(cold_start(m->models.corrected, how, from_c(*base_T_flange), q));
 }
 

@@ -2,4 +2,4 @@
 #include "mdhcal.h"
 #include "mdhcal/status.hpp"
 
-extern "C" const char* mdhcal_text(std::int32_t status) { return mdhcal::text(static_cast<mdhcal::Status>(status)); }
+extern "C" const char* mdhcal_status_text(std::int32_t status) { return mdhcal::status_text(static_cast<mdhcal::Status>(status)); }

@@ -68,7 +68,7 @@ bool valid(const CompensatorState<Real>& state) {
 Status make_compensator(const Geometry& nominal, const Geometry& corrected, CompensatorModel<Real>& model) noexcept {
   const Status environment = check_environment();
   if (environment != Status::ok) return environment;
-  if (check(nominal) != Status::ok || check(corrected) != Status::ok) return Status::bad_input;
+  if (check_geometry(nominal) != Status::ok || check_geometry(corrected) != Status::ok) return Status::bad_input;
   CompensatorModel<Real> made;
   Status status = make_arm(nominal, made.nominal);
   if (status == Status::ok) status = make_arm(corrected, made.corrected);

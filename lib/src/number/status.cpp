@@ -3,7 +3,7 @@
 
 namespace mdhcal {
 
-const char* text(Status status) noexcept {
+const char* status_text(Status status) noexcept {
   switch (status) {
     case Status::ok: return "ok";
     case Status::step_limited: return "limited by the step";

@@ -16,7 +16,7 @@ template <class Real>
 void measure_preparation() {
   using S = State<Real>;
   static SolutionOptions<Real> solution_options;
-  [[maybe_unused]] static Family found;
+  [[maybe_unused]] static ArmFamily found;
   const char* precision = precision_name<Real>;
   constexpr int count = input_count;
   const auto another = [](int i) {
@@ -29,7 +29,7 @@ void measure_preparation() {
   measure("default_tick_options", precision, "arms", count, another, [] { S::options = default_tick_options(S::arm); });
   measure("default_solution_options", precision, "arms", count, another,
           [] { solution_options = default_solution_options(S::arm); });
-  measure("family", precision, "arms", count, another, [] { found = family(S::arm); });
+  measure("family_of", precision, "arms", count, another, [] { found = family_of(S::arm); });
 }
 
 template <class Real>
@@ -112,7 +112,7 @@ void measure_tick() {
 void measure_arm() {
   measure("check_environment", "-", "once", 1, [](int) {}, [] { State<float>::status = check_environment(); });
   measure("check", "-", "arms", input_count, [](int i) { geometry = calibrated_arm(static_cast<std::uint64_t>(i) + 1); },
-          [] { State<float>::status = check(geometry); });
+          [] { State<float>::status = check_geometry(geometry); });
   measure_preparation<double>();
   measure_preparation<float>();
   geometry = calibrated_arm();

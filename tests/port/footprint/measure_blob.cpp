@@ -13,7 +13,7 @@ std::uint8_t blob[blob_size], buffer[blob_size], header[slot_header_size];
 std::uint32_t number;
 Status status;
 const char* words;
-Model model;
+BlobContent model;
 SlotHeader decoded;
 StoreState store_state;
 
@@ -37,7 +37,7 @@ constexpr Flash memory_flash{flash_geometry, read_flash, program_flash, erase_fl
 constexpr Loader any_blob{[](const std::uint8_t*, std::size_t, void*) { return Status::ok; }, nullptr};
 
 void expect(Status expected, const char* what) {
-  if (status != expected) std::printf("%s: %s\n", what, text(status));
+  if (status != expected) std::printf("%s: %s\n", what, status_text(status));
 }
 
 template <class Real>
@@ -57,7 +57,7 @@ void measure_self_test(int count) {
 void measure_blob() {
   constexpr int count = input_count;
   const auto another = [](int i) { some_blob(static_cast<std::uint64_t>(i) + 1, false, blob); };
-  measure("text", "-", "any", 30, [](int i) { status = static_cast<Status>(i); }, [] { words = text(status); });
+  measure("status_text", "-", "any", 30, [](int i) { status = static_cast<Status>(i); }, [] { words = status_text(status); });
   measure("crc32", "-", "blobs", count, another, [] { number = crc32(blob, blob_size); });
   measure("decode", "-", "blobs", count, another, [] { status = decode(blob, blob_size, DecodeOptions{}, model); });
   expect(Status::ok, "decode");

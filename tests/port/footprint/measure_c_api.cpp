@@ -16,8 +16,8 @@ struct C;
     using Model = PREFIX##_model;                                                                                       \
     using LoopState = PREFIX##_state;                                                                                   \
     using Pose = PREFIX##_pose;                                                                                         \
-    using Options = PREFIX##_options;                                                                                   \
-    using Report = PREFIX##_report;                                                                                     \
+    using Options = PREFIX##_tick_options;                                                                                   \
+    using Report = PREFIX##_tick_report;                                                                                     \
     using Solutions = PREFIX##_solutions;                                                                               \
     static constexpr const char* prefix = #PREFIX;                                                                      \
     static constexpr auto load = PREFIX##_load;                                                                         \
@@ -26,7 +26,7 @@ struct C;
     static constexpr auto start = PREFIX##_start;                                                                       \
     static constexpr auto start_ramp = PREFIX##_start_ramp;                                                             \
     static constexpr auto advance = PREFIX##_advance;                                                                   \
-    static constexpr auto default_options = PREFIX##_default_options;                                                   \
+    static constexpr auto default_tick_options = PREFIX##_default_tick_options;                                                   \
     static constexpr auto pose_to_joints = PREFIX##_pose_to_joints;                                                     \
     static constexpr auto joints_to_joints = PREFIX##_joints_to_joints;                                                 \
     static constexpr auto pose_to_pose = PREFIX##_pose_to_pose;                                                         \
@@ -61,11 +61,11 @@ void measure_precision() {
 
   row("load", "blobs", tick_count<double>, [](int i) { some_blob(static_cast<std::uint64_t>(i) + 1, true, blob); },
       [] { status = N::load(&model, sizeof model, MDHCAL_ABI_VERSION, blob, sizeof blob, nullptr); });
-  if (status != MDHCAL_OK && status != MDHCAL_SELF_TEST_TOLERANCE) std::printf("load: %s\n", mdhcal_text(status));
+  if (status != MDHCAL_OK && status != MDHCAL_SELF_TEST_TOLERANCE) std::printf("load: %s\n", mdhcal_status_text(status));
   some_blob(20220822, true, blob);  // the arm of the other rows
   status = N::load(&model, sizeof model, MDHCAL_ABI_VERSION, blob, sizeof blob, nullptr);
   row("joint_count", "any", 1, as_it_is, [] { status = N::joint_count(&model); });
-  row("default_options", "any", 1, as_it_is, [] { status = N::default_options(&model, &options); });
+  row("default_tick_options", "any", 1, as_it_is, [] { status = N::default_tick_options(&model, &options); });
   row("start", "any", 1, as_it_is, [] { status = N::start(&loop, sizeof loop, &model, MDHCAL_CORRECTED); });
   row("start_ramp", "any", 1, as_it_is, [] { status = N::start_ramp(&loop, MDHCAL_NOMINAL, Real{1}); });
   row("advance", "any", input_count, as_it_is, [] { status = N::advance(&loop, static_cast<Real>(0.001)); });
@@ -84,7 +84,7 @@ void measure_precision() {
       follow_path<Real>(set, i, random);
       std::copy_n(S::pose.quaternion, 4, pose.quaternion);
       std::copy_n(S::pose.position_m, 3, pose.position_m);
-      std::copy_n(S::options.max_step, mdhcal::max_joints, options.max_step);
+      std::copy_n(S::options.limits.max_step, mdhcal::max_joints, options.limits.max_step);
     };
     row("forward", name_of(set), input_count, anywhere,
         [] { status = N::forward(&model, MDHCAL_CORRECTED, S::q, &pose, jacobian); });
@@ -98,7 +98,7 @@ void measure_precision() {
         [] { status = N::joint_velocities(&model, S::q, S::velocity, S::max_velocity, S::joint_velocity); });
   }
   if constexpr (!in_software<Real>) {
-    status = N::default_options(&model, &options);
+    status = N::default_tick_options(&model, &options);
     const auto search = [&](int i) {
       double q_rad[6];
       joints(Set::mixed, i, random, q_rad);
@@ -106,9 +106,9 @@ void measure_precision() {
       status = N::forward(&model, MDHCAL_CORRECTED, S::q, &pose, nullptr);
     };
     row("find_solutions", "mixed", input_count / 50, search,
-        [] { status = N::find_solutions(&model, &options, 0, &pose, S::q, &solutions); });
+        [] { status = N::find_solutions(&model, &options.goal, 0, &pose, S::q, &solutions); });
     row("cold_start", "mixed", input_count / 50, search,
-        [] { status = N::cold_start(&model, &options, 0, &pose, S::q); });
+        [] { status = N::cold_start(&model, &options.goal, 0, &pose, S::q); });
   }
 }
 
@@ -116,7 +116,7 @@ void measure_precision() {
 
 void measure_c_api() {
   [[maybe_unused]] static const char* words;
-  measure("mdhcal_text", "-", "any", 30, [](int i) { status = i; }, [] { words = mdhcal_text(status); });
+  measure("mdhcal_status_text", "-", "any", 30, [](int i) { status = i; }, [] { words = mdhcal_status_text(status); });
   measure_precision<double>();
   measure_precision<float>();
 }

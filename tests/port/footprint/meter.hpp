@@ -65,7 +65,7 @@ struct State {
   }
   /// One tick at 1 kHz moves no joint further [rad].
   static void limit_steps() {
-    for (Real& step : options.max_step) step = static_cast<Real>(0.00314);
+    for (Real& step : options.limits.max_step) step = static_cast<Real>(0.00314);
   }
 };
 

@@ -8,5 +8,5 @@ int main(void) {
   const uint8_t bytes[4] = {0, 0, 0, 0};
   const mdhcal_demands demands = {NULL, NULL, NULL, 0};
   const int32_t status = mdhcal_load(&model, sizeof model, MDHCAL_ABI_VERSION, bytes, sizeof bytes, &demands);
-  return status == MDHCAL_BLOB_SIZE && mdhcal_text(status)[0] != '\0' ? 0 : 1;
+  return status == MDHCAL_BLOB_SIZE && mdhcal_status_text(status)[0] != '\0' ? 0 : 1;
 }
