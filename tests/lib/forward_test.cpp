@@ -6,6 +6,7 @@
 #include "mdhcal/kinematics.hpp"
 #include "tests/lib/arms.hpp"
 #include "tests/lib/factors.hpp"
+#include "tests/support/wide_frame.hpp"
 
 namespace {
 
@@ -59,5 +60,37 @@ void compare_with_products(double position_bound, double orthogonality_bound) {
 
 TEST(Forward, IsTheProductOfTheFactorsInDouble) { compare_with_products<double>(1e-12, 1e-14); }
 TEST(Forward, IsTheProductOfTheFactorsInFloat) { compare_with_products<float>(5e-6, 5e-6); }
+
+// An identity is not multiplied by, a flange off by a rounding is; where it is all the same, the numbers are.
+TEST(Forward, EndsAtTheFlange) {
+  Random random(62);
+  for (int n = 0; n < cases(2000); ++n) {
+    Geometry g = with_errors(wrist_arm(), random, 5e-3, 0.5 * deg);
+    double* c = g.last_T_flange.quaternion;
+    if (n % 4 >= 2) {
+      double square = 0;
+      for (int k = 0; k < 4; ++k) {
+        c[k] = random.symmetric(1) + (k == 0 ? 1.5 : 0);
+        square += c[k] * c[k];
+      }
+      for (int k = 0; k < 4; ++k) c[k] /= std::sqrt(square);
+    }
+    if (n % 2 == 1) g.last_T_flange.position_m[n % 3] = random.symmetric(0.3);
+    if (n % 8 == 0) c[3] = 1e-13;
+    Arm<double> arm{};
+    ASSERT_EQ(make_arm(g, arm), Status::ok);
+    double q[6];
+    for (double& joint : q) joint = random.symmetric(pi);
+    Pose<double> pose{}, multiplied{};
+    ASSERT_EQ(forward(arm, q, pose), Status::ok);
+    const tests::WideFrame truth = tests::wide_forward(g, q);
+    ASSERT_LT(tests::position_difference(truth, pose), 1e-12) << n;
+    ASSERT_LT(tests::rotation_difference(truth, pose), 1e-14) << n;
+    arm.has_flange = 1;
+    ASSERT_EQ(forward(arm, q, multiplied), Status::ok);
+    for (int k = 0; k < 4; ++k) ASSERT_EQ(pose.quaternion[k], multiplied.quaternion[k]) << n;
+    for (int k = 0; k < 3; ++k) ASSERT_EQ(pose.position_m[k], multiplied.position_m[k]) << n;
+  }
+}
 
 }  // namespace

@@ -141,9 +141,9 @@ std::uint64_t golden_hash(int operations) {
 /// where a result does; if it is one of forward() or tick(), arithmetic_id (mdhcal/self_test.hpp) changes as well.
 inline constexpr int golden_operations = 100000;
 inline constexpr int golden_short = 1000;
-inline constexpr std::uint64_t golden_double = 0x07657070460273AFULL;
-inline constexpr std::uint64_t golden_float = 0xF8C7F61C4FBF97E4ULL;
-inline constexpr std::uint64_t golden_double_short = 0x9FBEA7681C20D46FULL;
-inline constexpr std::uint64_t golden_float_short = 0x4490004CC59CF2B4ULL;
+inline constexpr std::uint64_t golden_double = 0xC3A9D41F30663F25ULL;
+inline constexpr std::uint64_t golden_float = 0xE427413BD384CB30ULL;
+inline constexpr std::uint64_t golden_double_short = 0x8C8CA180BCA66F1BULL;
+inline constexpr std::uint64_t golden_float_short = 0xE383E123362C7D54ULL;
 
 }  // namespace mdhcal::test

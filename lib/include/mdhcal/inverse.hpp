@@ -71,8 +71,8 @@ TickOptions<float> default_tick_options(const Arm<float>& arm) noexcept;
 /// are on. A last joint outside its limit only moves inwards. If the pose cannot be met, the weighted error is made
 /// small within the limits instead, and the result is usable all the same.
 ///
-/// The regular case is Newton's method on the Jacobian's QR factors. Where that would break a limit or does not
-/// contract, it is damped least squares within the bounds (Levenberg 1944, Marquardt 1963), the damping by the error
+/// The regular case is Newton's method with a first step of second order (Chebyshev's), at least one step however wide the
+/// tolerance. Where that would break a limit or leave its neighbourhood, it is damped least squares within the bounds (Levenberg 1944, Marquardt 1963), the damping by the error
 /// (Yamashita, Fukushima 2001; Sugihara 2011). If that does not meet the pose either, the tick starts again from the last
 /// joints with the caller's weights: a singularity where the arm loses a turn (a wrist's) is passed at rest; one where
 /// it loses a shift (a straight elbow) is a fold, and the arm stays on its side of it.

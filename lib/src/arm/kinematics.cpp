@@ -97,7 +97,7 @@ inline void keep(const Frame<Real>& frame, Real* axis, Real* origin) {
 // base_T_i = base_T_{i-1} A_i, in place; of i = 0 base_T_1. Where a column of the Jacobian is asked for, it receives a point
 // on the joint's axis and the axis in the base frame.
 template <bool with_column>
-inline void append_link(const Arm<Real>& arm, std::int32_t i, const Real* q, Frame<Real>& frame, Real* column) {
+[[gnu::always_inline]] inline void append_link(const Arm<Real>& arm, std::int32_t i, const Real* q, Frame<Real>& frame, Real* column) {
   LinkTurn t;
   read_link(arm, i, q, t);
   if (i == 0) {
@@ -128,39 +128,37 @@ bool readings_valid(const Arm<Real>& arm, const Real* q) noexcept {
 }
 
 void evaluate(const Arm<Real>& arm, const Real* q, Frame<Real>& base_T_flange) noexcept {
-  append_link<false>(arm, 0, q, base_T_flange, nullptr);
-  for (std::int32_t i = 1; i < arm.joint_count; ++i) append_link<false>(arm, i, q, base_T_flange, nullptr);
+  for (std::int32_t i = 0; i < arm.joint_count; ++i) append_link<false>(arm, i, q, base_T_flange, nullptr);
   append_flange(arm, base_T_flange);
 }
 
 void evaluate(const Arm<Real>& arm, const Real* q, Frame<Real>& base_T_flange, Jacobian<Real>& coordinates) noexcept {
-  append_link<true>(arm, 0, q, base_T_flange, coordinates.column[0]);
-  for (std::int32_t i = 1; i < arm.joint_count; ++i) {
+  for (std::int32_t i = 0; i < arm.joint_count; ++i) {
     append_link<true>(arm, i, q, base_T_flange, coordinates.column[i]);
   }
   append_flange(arm, base_T_flange);
+  const Real* p = base_T_flange.position_m;
   for (std::int32_t i = 0; i < arm.joint_count; ++i) {
     Real* column = coordinates.column[i];
-    Real* z = column + 3;
+    const Real x = column[3], y = column[4], z = column[5];
     if (slides(arm, i)) {
-      for (int k = 0; k < 3; ++k) {
-        column[k] = z[k];
-        z[k] = 0;
-      }
-    } else {
-      Real lever[3];
-      for (int k = 0; k < 3; ++k) lever[k] = base_T_flange.position_m[k] - column[k];
-      column[0] = z[1] * lever[2] - z[2] * lever[1];
-      column[1] = z[2] * lever[0] - z[0] * lever[2];
-      column[2] = z[0] * lever[1] - z[1] * lever[0];
+      column[0] = x;
+      column[1] = y;
+      column[2] = z;
+      for (int k = 3; k < 6; ++k) column[k] = 0;
+      continue;
     }
+    const Real lever_x = p[0] - column[0], lever_y = p[1] - column[1], lever_z = p[2] - column[2];
+    column[0] = y * lever_z - z * lever_y;
+    column[1] = z * lever_x - x * lever_z;
+    column[2] = x * lever_y - y * lever_x;
   }
 }
 
 void to_readings(const Arm<Real>& arm, Jacobian<Real>& jacobian) noexcept {
   if (arm.coupled == 0) {
     for (std::int32_t j = 0; j < arm.joint_count; ++j) {
-      if (arm.map[j][j] > Real{0}) continue;
+      if (arm.link[j].sign > Real{0}) continue;
       for (int k = 0; k < 6; ++k) jacobian.column[j][k] = -jacobian.column[j][k];
     }
     return;
@@ -199,8 +197,7 @@ Status forward(const Arm<Real>& arm, const Real* q, Pose<Real>& base_T_flange, J
 Status link_frames(const Arm<Real>& arm, const Real* q, Frame<Real>* frames) noexcept {
   if (!readings_valid(arm, q)) return Status::bad_input;
   frames[0] = identity;
-  append_link<false>(arm, 0, q, frames[1], nullptr);
-  for (std::int32_t i = 1; i < arm.joint_count; ++i) {
+  for (std::int32_t i = 0; i < arm.joint_count; ++i) {
     frames[i + 1] = frames[i];
     append_link<false>(arm, i, q, frames[i + 1], nullptr);
   }

@@ -6,23 +6,11 @@
 #include "mdhcal/solutions.hpp"
 #include "number/real.hpp"
 #include "arm/rotation.hpp"
+#include "arm/vector.hpp"
 #include "number/trigonometry.hpp"
 
 namespace mdhcal {
 namespace {
-
-struct Vector {
-  Real x, y, z;
-};
-
-inline Vector operator+(const Vector& a, const Vector& b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
-inline Vector operator-(const Vector& a, const Vector& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
-inline Vector operator*(Real s, const Vector& a) { return {s * a.x, s * a.y, s * a.z}; }
-inline Real inner(const Vector& a, const Vector& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
-inline Vector cross(const Vector& a, const Vector& b) {
-  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
-}
-inline Real length(const Vector& a) { return square_root(inner(a, a)); }
 
 /// The arm as screws: base_T_flange(c) = turn(axis 1, c_1) ... turn(axis 6, c_6) zero_T_flange, c the joint coordinates.
 struct Screws {

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
-// Private to lib/src; include after real.hpp. The regular step of a six-joint arm: J dq = e by Householder QR.
+// Private to lib/src; include after real.hpp. A x = b for six joints by Householder QR. Templates write its loops out: at -O2
+// GCC unrolls only what becomes smaller, and the loops would cost as much as the arithmetic.
 #pragma once
 
-#include "number/real.hpp"
 #include "arm/rotation.hpp"
+#include "number/real.hpp"
 
 namespace mdhcal {
 namespace {
@@ -11,66 +12,107 @@ namespace {
 /// The QR factors of a 6 x 6 matrix, column by column: below and on the diagonal the Householder vectors, above it R.
 struct Factors {
   Real column[6][6];
-  Real diagonal[6];   ///< of R
+  Real inverse_diagonal[6];  ///< of R
+  Real scale[6];             ///< 2 / |v|^2 of the Householder vectors
 };
 
-/// 2 / |v|^2 of Householder vector k, since |v|^2 / 2 = -norm v_k.
-inline Real reflection_scale(const Factors& f, int k) { return Real{-1} / (f.diagonal[k] * f.column[k][k]); }
+/// The sum of a_i b_i over i = k ... 5.
+template <int k>
+[[gnu::always_inline]] inline Real tail_product(const Real* a, const Real* b) {
+  if constexpr (k == 5) {
+    return a[5] * b[5];
+  } else {
+    return a[k] * b[k] + tail_product<k + 1>(a, b);
+  }
+}
+
+/// to_i -= factor v_i for i = k ... 5.
+template <int k>
+[[gnu::always_inline]] inline void subtract_tail(Real factor, const Real* v, Real* to) {
+  to[k] -= factor * v[k];
+  if constexpr (k < 5) subtract_tail<k + 1>(factor, v, to);
+}
+
+/// Reflection k of b.
+template <int k>
+[[gnu::always_inline]] inline void reflect(const Factors& f, Real* b) {
+  subtract_tail<k>(f.scale[k] * tail_product<k>(f.column[k], b), f.column[k], b);
+}
+
+/// Reflection k of the columns from `column` on.
+template <int k, int column>
+[[gnu::always_inline]] inline void reflect_columns(Factors& f) {
+  if constexpr (column < 6) {
+    reflect<k>(f, f.column[column]);
+    reflect_columns<k, column + 1>(f);
+  }
+}
+
+/// Eliminates the columns from k on below the diagonal. Returns false if the matrix is singular. |v|^2 / 2 = -norm v_k: one
+/// division gives both reciprocals.
+template <int k>
+[[gnu::always_inline]] inline bool eliminate(Factors& f) {
+  Real* v = f.column[k];
+  const Real square = tail_product<k>(v, v);
+  if (!(square > Real{0})) return false;
+  const Real norm = v[k] > Real{0} ? -square_root(square) : square_root(square);
+  v[k] -= norm;
+  const Real part = Real{1} / (norm * v[k]);
+  f.inverse_diagonal[k] = part * v[k];
+  f.scale[k] = -part;
+  reflect_columns<k, k + 1>(f);
+  if constexpr (k < 5) {
+    return eliminate<k + 1>(f);
+  } else {
+    return true;
+  }
+}
 
 /// Factors the matrix in place. Returns false if it is singular.
-inline bool factor(Factors& f) {
-  for (int k = 0; k < 6; ++k) {
-    Real* v = f.column[k];
-    Real square = 0;
-    for (int i = k; i < 6; ++i) square += v[i] * v[i];
-    if (!(square > Real{0})) return false;
-    const Real norm = v[k] > Real{0} ? -square_root(square) : square_root(square);
-    f.diagonal[k] = norm;
-    v[k] -= norm;
-    const Real scale = reflection_scale(f, k);
-    for (int j = k + 1; j < 6; ++j) {
-      Real* c = f.column[j];
-      Real sum = 0;
-      for (int i = k; i < 6; ++i) sum += v[i] * c[i];
-      sum *= scale;
-      for (int i = k; i < 6; ++i) c[i] -= sum * v[i];
-    }
+[[gnu::noinline]] bool factor(Factors& f) { return eliminate<0>(f); }
+
+/// `sum` less what x_j ... x_last are in row `row` of R x.
+template <int row, int j, int last>
+[[gnu::always_inline]] inline Real without(const Factors& f, const Real* x, Real sum) {
+  if constexpr (j > last) {
+    return sum;
+  } else {
+    return without<row, j + 1, last>(f, x, sum - f.column[j][row] * x[j]);
   }
-  return true;
+}
+
+/// R x = b, x in the place of b, from row `row` up, where x_last is the last that is not zero.
+template <int row, int last>
+[[gnu::always_inline]] inline void solve_upper(const Factors& f, Real* b) {
+  b[row] = f.inverse_diagonal[row] * without<row, row + 1, last>(f, b, b[row]);
+  if constexpr (row > 0) solve_upper<row - 1, last>(f, b);
+}
+
+/// The squares of the columns from k on of R^-1, summed up.
+template <int k>
+[[gnu::always_inline]] inline Real inverse_squares(const Factors& f) {
+  if constexpr (k == 6) {
+    return Real{0};
+  } else {
+    Real x[6] = {};
+    x[k] = 1;
+    solve_upper<k, k>(f, x);
+    return tail_product<0>(x, x) + inverse_squares<k + 1>(f);
+  }
 }
 
 /// A lower bound of the smallest singular value, 1 / |R^-1|_F, which is at most sqrt(6) below it.
-inline Real singular_bound(const Factors& f) {
-  Real frobenius = 0;
-  for (int k = 0; k < 6; ++k) {
-    // Column k of R^-1 by back substitution.
-    Real x[6];
-    x[k] = Real{1} / f.diagonal[k];
-    frobenius += x[k] * x[k];
-    for (int i = k - 1; i >= 0; --i) {
-      Real sum = 0;
-      for (int j = i + 1; j <= k; ++j) sum += f.column[j][i] * x[j];
-      x[i] = -sum / f.diagonal[i];
-      frobenius += x[i] * x[i];
-    }
-  }
-  return Real{1} / square_root(frobenius);
-}
+[[gnu::noinline]] Real singular_bound(const Factors& f) { return Real{1} / square_root(inverse_squares<0>(f)); }
 
-/// x = A^-1 b; b is overwritten.
-inline void solve(const Factors& f, Real* b, Real* x) {
-  for (int k = 0; k < 6; ++k) {
-    const Real* v = f.column[k];
-    Real sum = 0;
-    for (int i = k; i < 6; ++i) sum += v[i] * b[i];
-    sum *= reflection_scale(f, k);
-    for (int i = k; i < 6; ++i) b[i] -= sum * v[i];
-  }
-  for (int i = 5; i >= 0; --i) {
-    Real sum = b[i];
-    for (int j = i + 1; j < 6; ++j) sum -= f.column[j][i] * x[j];
-    x[i] = sum / f.diagonal[i];
-  }
+/// A x = b, x in the place of b.
+[[gnu::noinline]] void solve(const Factors& f, Real* b) {
+  reflect<0>(f, b);
+  reflect<1>(f, b);
+  reflect<2>(f, b);
+  reflect<3>(f, b);
+  reflect<4>(f, b);
+  reflect<5>(f, b);
+  solve_upper<5, 5>(f, b);
 }
 
 }  // namespace
