@@ -8,6 +8,7 @@
 #include "offline/base/text_table.hpp"
 #include "offline/cli/calibration_arguments.hpp"
 #include "offline/cli/messages.hpp"
+#include "offline/cli/robot_argument.hpp"
 #include "offline/output/result_files.hpp"
 #include "offline/report/write_result.hpp"
 
@@ -53,7 +54,7 @@ void tell(const Calibration& c, const Assessment& assessment) {
 void run_calibrate(const CalibrateArguments& arguments) {
   const CalibrationOptions options = calibration_options(arguments);
   const std::string date = blob_date(arguments.date);
-  const Robot robot = read_robot(arguments.robot);
+  const Robot robot = robot_of_argument(arguments.robot);
   const Dataset data = read_dataset(arguments.measurements, robot);
   Dataset test;
   if (!arguments.test.empty()) test = read_dataset(arguments.test, robot);

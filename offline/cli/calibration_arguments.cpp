@@ -9,7 +9,7 @@
 namespace mdhcal::offline {
 
 void add_calibration_arguments(CLI::App& command, CalibrationArguments& a) {
-  command.add_option("ROBOT", a.robot, "Robot file (TOML)")->required();
+  command.add_option("ROBOT", a.robot, "Robot file (TOML), or a name of the catalogue")->required();
   command.add_option("MEASUREMENTS", a.measurements, "Measurements to identify from (CSV)")->required();
   command.add_option("-o,--output", a.directory, "Folder to write")->required();
   command.add_flag("--json", a.json, "Print the result as JSON on stdout, and nothing else there");

@@ -25,6 +25,7 @@ void add_plan(CLI::App& app);
 void add_batch(CLI::App& app);
 void add_simulate(CLI::App& app);
 void add_convert(CLI::App& app);
+void add_robots(CLI::App& app);
 
 /// All of them, in the order in which `mdhcal --help` lists them.
 inline void add_commands(CLI::App& app) {
@@ -45,6 +46,7 @@ inline void add_commands(CLI::App& app) {
   add_batch(app);
   add_simulate(app);
   add_convert(app);
+  add_robots(app);
 }
 
 }  // namespace mdhcal::offline

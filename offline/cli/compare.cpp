@@ -13,6 +13,7 @@
 #include "offline/cli/calibration_arguments.hpp"
 #include "offline/cli/messages.hpp"
 #include "offline/cli/published.hpp"
+#include "offline/cli/robot_argument.hpp"
 #include "offline/report/write_result.hpp"
 #include "offline/robot/vectors.hpp"
 
@@ -147,7 +148,7 @@ Comparison compare_methods(const Robot& robot, const Dataset& data, const Calibr
 
 void run_compare(const CalibrationArguments& arguments) {
   const CalibrationOptions options = calibration_options(arguments);
-  const Robot robot = read_robot(arguments.robot);
+  const Robot robot = robot_of_argument(arguments.robot);
   const Dataset data = read_dataset(arguments.measurements, robot);
   Dataset test;
   if (!arguments.test.empty()) test = read_dataset(arguments.test, robot);

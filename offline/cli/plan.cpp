@@ -11,6 +11,7 @@
 #include "offline/base/progress.hpp"
 #include "offline/cli/commands.hpp"
 #include "offline/cli/messages.hpp"
+#include "offline/cli/robot_argument.hpp"
 #include "offline/measure/joint_file.hpp"
 #include "offline/plan/plan.hpp"
 #include "offline/robot/units.hpp"
@@ -116,7 +117,7 @@ void print_text(const Plan& plan) {
 }
 
 void run_plan(PlanArguments& arguments) {
-  const Robot robot = read_robot(arguments.robot);
+  const Robot robot = robot_of_argument(arguments.robot);
   std::vector<Joints> candidates;
   if (!arguments.candidates.empty()) {
     const auto table = read_joint_file(arguments.candidates, robot.geometry);
@@ -148,7 +149,7 @@ void run_plan(PlanArguments& arguments) {
 void add_plan(CLI::App& app) {
   auto arguments = std::make_shared<PlanArguments>();
   CLI::App* command = app.add_subcommand("plan", "Choose the poses to measure, and say what to expect of them");
-  command->add_option("ROBOT", arguments->robot, "Robot file")->required();
+  command->add_option("ROBOT", arguments->robot, "Robot file, or a name of the catalogue")->required();
   command->add_option("--count", arguments->options.count, "Poses to choose")->required();
   command->add_option("-o,--output", arguments->output, "Joint table (CSV) to write, in a sensible order")->required();
   command->add_option("--candidates", arguments->candidates,

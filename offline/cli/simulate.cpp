@@ -8,6 +8,7 @@
 #include "offline/base/progress.hpp"
 #include "offline/cli/commands.hpp"
 #include "offline/cli/messages.hpp"
+#include "offline/cli/robot_argument.hpp"
 #include "offline/robot/units.hpp"
 #include "offline/simulate/family.hpp"
 #include "offline/simulate/measurement_text.hpp"
@@ -46,7 +47,7 @@ void run_simulate(SimulateArguments arguments) {
   const auto& names = family_names();
   const bool built_in = !std::filesystem::exists(arguments.robot) &&
                         std::find(names.begin(), names.end(), arguments.robot) != names.end();
-  const Robot robot = built_in ? family_robot(arguments.robot) : read_robot(arguments.robot);
+  const Robot robot = built_in ? family_robot(arguments.robot) : robot_of_argument(arguments.robot);
   SimulationOptions& options = arguments.options;
   options.length_error_m = arguments.length_error_mm * 1e-3;
   options.angle_error_rad = arguments.angle_error_deg * rad_per_deg;
@@ -78,7 +79,7 @@ void add_simulate(CLI::App& app) {
   CLI::App* command = app.add_subcommand("simulate", "Write a robot with known errors, its measurements and the truth");
   SimulationOptions& options = arguments->options;
   command->add_option("ROBOT", arguments->robot,
-                      "Robot file, or a built-in arm: three-parallel, spherical-wrist, seven-joint, five-joint")
+                      "Robot file, a name of the catalogue, or a built-in arm: three-parallel, spherical-wrist, seven-joint, five-joint")
       ->required();
   command->add_option("-o,--output", arguments->directory, "Folder to write")->required();
   command->add_option("--poses", options.configurations, "Configurations to measure")->capture_default_str();
