@@ -1,8 +1,10 @@
 /* SPDX-License-Identifier: MIT
  *
  * The library for C99. Everything below exists twice: mdhcal_... in double, mdhcalf_... in float.
- * A model is constant after mdhcal_load() and shared by any number of loops; each loop has a state of its own. Both are
- * opaque storage of a stated size that the caller owns; nothing is allocated.
+ * A calibrated arm is constant after mdhcal_load() and shared by any number of loops and threads; each loop has a
+ * compensator of its own, whose functions belong to the loop's thread: none locks, none may run beside another on the same
+ * compensator. A new calibration is loaded elsewhere and handed over to the loop's thread, which calls start_ramp(); that
+ * copies what it needs. Both are opaque storage of a stated size that the caller owns; nothing is allocated.
  * Units: metres, radians, quaternions w, x, y, z with w >= 0. Joints are readings of the controller [rad] or [m].
  */
 #ifndef MDHCAL_H
@@ -16,12 +18,11 @@ extern "C" {
 #endif
 
 /* Changes with every change of a size, a struct or a signature below. */
-#define MDHCAL_ABI_VERSION 1u
+#define MDHCAL_ABI_VERSION 2u
 
 #define MDHCAL_MAX_JOINTS 8
 #define MDHCAL_MAX_SOLUTIONS 16
-#define MDHCAL_MODEL_SIZE 3072   /* [byte] */
-#define MDHCAL_STATE_SIZE 64     /* [byte] */
+#define MDHCAL_MAX_TARGETS 8
 
 /* What each function returns: the numbers of enum class Status (mdhcal/status.hpp), whose comments hold. */
 enum {
@@ -66,19 +67,66 @@ typedef struct mdhcal_demands {
   uint32_t minimum_counter;  /* the least security counter that is accepted */
 } mdhcal_demands;
 
+/* What a blob says beside the geometry: struct BlobDescription (mdhcal/blob.hpp), whose comments hold. Texts are UTF-8 and end
+ * with a zero byte. */
+typedef struct mdhcal_target {
+  char name[16];
+  double flange_p_m[3];
+} mdhcal_target;
+typedef struct mdhcal_provenance {
+  char tool_version[32], date[16], method[16], lambda_rule[32];
+  uint8_t measurements_sha256[32];
+  uint32_t pose_count, held_out_count;
+  int32_t has_measurements, has_lambda, has_held_out;
+  double lambda, mean_before_m, max_before_m, mean_after_m, max_after_m;
+} mdhcal_provenance;
+typedef struct mdhcal_tolerances {
+  double position_m, rotation_rad;
+  float float_position_m, float_rotation_rad;
+} mdhcal_tolerances;
+typedef struct mdhcal_description {
+  char name[64], serial[32];
+  int32_t has_base, target_count;
+  double tracker_T_base_quaternion[4], tracker_T_base_position_m[3];
+  mdhcal_target target[MDHCAL_MAX_TARGETS];
+  int32_t family;
+  uint32_t security_counter;
+  mdhcal_tolerances tolerances;
+  mdhcal_provenance provenance;
+} mdhcal_description;
+
+/* One joint of a calibrated arm. Without a limit its value is 0. */
+typedef struct mdhcal_joint {
+  int32_t slides;            /* 1: prismatic, readings in [m]; 0: [rad] */
+  int32_t has_min, has_max;
+  double min, max;
+} mdhcal_joint;
+
 /* The status in words: static, never NULL. */
 const char* mdhcal_status_text(int32_t status);
+/* 1 if what was asked for may be used (usable() of mdhcal/status.hpp), else 0. */
+int32_t mdhcal_usable(int32_t status);
+/* For each thread that computes: MDHCAL_OK or MDHCAL_BAD_ENVIRONMENT (mdhcal/environment.hpp). */
+int32_t mdhcal_check_environment(void);
 
 #define MDHCAL_REAL_TYPE double
+#define MDHCAL_ARM_BYTES 3584
+#define MDHCAL_COMPENSATOR_BYTES 5632
 #define MDHCAL_C_NAME(name) mdhcal_##name
 #include "mdhcal/c_functions.h"
 #undef MDHCAL_REAL_TYPE
+#undef MDHCAL_ARM_BYTES
+#undef MDHCAL_COMPENSATOR_BYTES
 #undef MDHCAL_C_NAME
 
 #define MDHCAL_REAL_TYPE float
+#define MDHCAL_ARM_BYTES 2304
+#define MDHCAL_COMPENSATOR_BYTES 3072
 #define MDHCAL_C_NAME(name) mdhcalf_##name
 #include "mdhcal/c_functions.h"
 #undef MDHCAL_REAL_TYPE
+#undef MDHCAL_ARM_BYTES
+#undef MDHCAL_COMPENSATOR_BYTES
 #undef MDHCAL_C_NAME
 
 #ifdef __cplusplus

@@ -11,7 +11,6 @@
 #include "board.hpp"
 #include "emulated_flash.hpp"
 #include "mdhcal/port/store.hpp"
-#include "mdhcal/self_test.hpp"
 #include "motion.hpp"
 #include "receiver.hpp"
 #include "ring.hpp"
@@ -46,18 +45,17 @@ Status prepare(const std::uint8_t* bytes, std::size_t size, void* context) {
   Correction& target = *loader.target;
   mdhcal::DecodeOptions demands;
   demands.serial = loader.options->serial;
-  Status status = mdhcal::decode(bytes, size, demands, target.model);
-  if (status != Status::ok) return status;
-  if (target.model.geometry.joint_count != joint_count) return Status::blob_value;
-  mdhcal::Geometry nominal = target.model.geometry;
-  for (std::size_t i = 0; i < mdhcal::max_joints; ++i) nominal.link[i] = target.model.nominal[i];
-  status = mdhcal::make_compensator(nominal, target.model.geometry, target.compensator);
-  if (status != Status::ok) return status;
-  target.state = mdhcal::rest(target.compensator, true);
-  target.options = mdhcal::default_tick_options(target.compensator.corrected);
-  status = mdhcal::self_test(target.model, target.compensator.corrected);
-  Line("self-test: ") << mdhcal::status_text(status);
-  return status == Status::self_test_tolerance ? Status::ok : status;
+  const Status status = mdhcal::load(bytes, size, demands, target.arm);
+  if (mdhcal::usable(status) || status == Status::self_test_failed) {
+    Line("self-test: ") << mdhcal::status_text(status);
+  }
+  if (!mdhcal::usable(status)) return status;
+  if (target.arm.corrected.joint_count != joint_count) return Status::blob_value;
+  const Status started = mdhcal::start_at_rest(target.arm, mdhcal::Model::corrected, target.compensator);
+  if (started != Status::ok) return started;
+  // The loop limits the steps of what it commands, which is between two corrections during a swap.
+  target.options = mdhcal::default_tick_options(target.arm.corrected);
+  return Status::ok;
 }
 
 // The correction that is neither active nor about to be.
@@ -119,7 +117,7 @@ void boot(const mdhcal::Flash& flash, const Options& options, mdhcal::StoreState
   }
   if (status == Status::ok) {
     Line("boot: slot ") << state.active << ", sequence " << state.sequence << ", robot "
-                        << context.target->model.name << ", serial " << context.target->model.serial;
+                        << context.target->arm.description.name << ", serial " << context.target->arm.description.serial;
     motion.request(*context.target);
     motion.enable(options.allow_nominal);
   } else if (options.allow_nominal) {

@@ -26,7 +26,7 @@ double smooth(double s) { return s * s * s * (10.0 + s * (6.0 * s - 15.0)); }
 
 // The joints that bring the arm as it is to where the path's joints were meant to bring it.
 Status correct(const Correction& correction, const double* path_q, double* q) {
-  return mdhcal::joints_to_joints(correction.compensator, correction.state, correction.options, path_q, q);
+  return mdhcal::joints_to_joints(correction.compensator, correction.options, path_q, q);
 }
 
 void copy(const double* from, double* to) {

@@ -4,16 +4,14 @@
 #include <atomic>
 #include <cstdint>
 
-#include "mdhcal/blob.hpp"
 #include "mdhcal/compensator.hpp"
 
 namespace firmware {
 
-/// A model made ready for the servo loop. Constant while the loop may hold its pointer.
+/// A calibration made ready for the servo loop. Constant while the loop may hold its pointer.
 struct Correction {
-  mdhcal::BlobContent model;
-  mdhcal::CompensatorModel<double> compensator;
-  mdhcal::CompensatorState<double> state;  ///< at rest on the corrected geometry
+  mdhcal::CalibratedArm<double> arm;
+  mdhcal::Compensator<double> compensator;  ///< at rest on the corrected geometry
   mdhcal::TickOptions<double> options;
 };
 

@@ -74,9 +74,10 @@ TYPED_TEST(Forms, AreTrueOfArmsOfFiveToEightJoints) {
   for (const Kind& kind : kinds()) {
     for (int n = 0; n < cases(100); ++n) {
       const Geometry corrected = with_errors(kind.nominal, random, 1e-3, 0.1 * deg);
-      CompensatorModel<Real> model{};
-      ASSERT_EQ(make_compensator(kind.nominal, corrected, model), Status::ok);
-      const CompensatorState<Real> state = rest(model, true);
+      CalibratedArm<Real> model{};
+      ASSERT_EQ(make_calibrated_arm(kind.nominal, corrected, model), Status::ok);
+      Compensator<Real> state{};
+      ASSERT_EQ(start_at_rest(model, Model::corrected, state), Status::ok);
       TickOptions<Real> options = default_tick_options(model.corrected);
       options.goal.task = kind.task;
       Real nominal_q[max_joints] = {};
@@ -91,26 +92,27 @@ TYPED_TEST(Forms, AreTrueOfArmsOfFiveToEightJoints) {
       };
       Real q[max_joints];
       std::copy(nominal_q, nominal_q + max_joints, q);
-      ASSERT_EQ(pose_to_joints(model, state, options, target, q), Status::ok)
+      ASSERT_EQ(pose_to_joints(state, options, target, q), Status::ok)
           << n << ", joints " << kind.nominal.joint_count;
       expect_there(corrected, q, "first");
       Real second[max_joints];
       std::copy(nominal_q, nominal_q + max_joints, second);
-      ASSERT_EQ(joints_to_joints(model, state, options, nominal_q, second), Status::ok);
+      ASSERT_EQ(joints_to_joints(state, options, nominal_q, second), Status::ok);
       expect_there(corrected, second, "second");
       Real third[max_joints];
       std::copy(nominal_q, nominal_q + max_joints, third);
       Pose<Real> command{};
-      ASSERT_EQ(pose_to_pose(model, state, options, target, third, command), Status::ok);
+      ASSERT_EQ(pose_to_pose(state, options, target, third, command), Status::ok);
       expect_there(corrected, third, "third");
       // The nominal controller's joints for the command are `third`, if it has an inverse at all.
       const Distance off = distance(product_of_factors(kind.nominal, third), command);
       EXPECT_LE(off.position_m, TestFixture::is_double ? 1e-12 : 2e-6);
       EXPECT_LE(off.rotation_rad, TestFixture::is_double ? 1e-12 : 2e-6);
       // At rest on the nominal model nothing is corrected.
-      const CompensatorState<Real> off_state = rest(model, false);
+      Compensator<Real> off_state{};
+      ASSERT_EQ(start_at_rest(model, Model::nominal, off_state), Status::ok);
       std::copy(nominal_q, nominal_q + max_joints, q);
-      ASSERT_EQ(joints_to_joints(model, off_state, options, nominal_q, q), Status::ok);
+      ASSERT_EQ(joints_to_joints(off_state, options, nominal_q, q), Status::ok);
       for (int i = 0; i < kind.nominal.joint_count; ++i) EXPECT_NEAR(q[i], nominal_q[i], 1e-6);
     }
   }
@@ -122,28 +124,29 @@ TYPED_TEST(Forms, RampBeginsAndEndsWithoutAChangeOfVelocity) {
   using Real = TypeParam;
   Random random(93);
   const Geometry corrected = with_errors(ur5(), random, 5e-3, 0.5 * deg);
-  CompensatorModel<Real> model{};
-  ASSERT_EQ(make_compensator(ur5(), corrected, model), Status::ok);
-  CompensatorState<Real> state = rest(model, false);
+  CalibratedArm<Real> model{};
+  ASSERT_EQ(make_calibrated_arm(ur5(), corrected, model), Status::ok);
+  Compensator<Real> state{};
+  ASSERT_EQ(start_at_rest(model, Model::nominal, state), Status::ok);
   const TickOptions<Real> options = default_tick_options(model.corrected);
   Real q[max_joints] = {};
   this->draw(ur5(), random, q);
   Pose<Real> target{};
   ASSERT_EQ(forward(model.nominal, q, target), Status::ok);
-  ASSERT_EQ(start_ramp(state, true, Real(1)), Status::ok);
+  ASSERT_EQ(start_ramp(state, model, Model::corrected, 1000), Status::ok);
   double step[10] = {};
   for (int tenth = 0; tenth < 10; ++tenth) {
     for (int k = 0; k < 100; ++k) {
       Real last[6];
       std::copy(q, q + 6, last);
-      ASSERT_EQ(advance(state, Real(0.001)), Status::ok);
-      ASSERT_EQ(pose_to_joints(model, state, options, target, q), Status::ok);
+      ASSERT_EQ(advance_ramp(state), Status::ok);
+      ASSERT_EQ(pose_to_joints(state, options, target, q), Status::ok);
       for (int i = 0; i < 6; ++i) step[tenth] += std::fabs(static_cast<double>(q[i] - last[i]));
     }
   }
-  // p^2 (3 - 2 p) covers 0.028 in the first tenth and 0.148 in the fifth.
-  EXPECT_NEAR(step[0] / step[4], 0.028 / 0.148, TestFixture::is_double ? 0.02 : 0.1);
-  EXPECT_NEAR(step[9] / step[4], 0.028 / 0.148, TestFixture::is_double ? 0.02 : 0.1);
+  // s^3 (10 - 15 s + 6 s^2) covers 0.00856 in the first tenth and 0.18256 in the fifth.
+  EXPECT_NEAR(step[0] / step[4], 0.00856 / 0.18256, TestFixture::is_double ? 0.02 : 0.1);
+  EXPECT_NEAR(step[9] / step[4], 0.00856 / 0.18256, TestFixture::is_double ? 0.02 : 0.1);
 }
 
 struct Velocity {
@@ -195,8 +198,10 @@ TYPED_TEST(Forms, VelocitiesAreThoseOfTheProductOfTheFactors) {
       const Velocity wanted = velocity_of(g, q, rate);
       Real asked[6];
       for (int k = 0; k < 6; ++k) asked[k] = static_cast<Real>(wanted.along[k]);
-      Real limit[max_joints];
-      std::fill(limit, limit + max_joints, Real(100));
+      JointRateLimits<Real> limit{};
+      std::fill(limit.max_velocity, limit.max_velocity + max_joints, Real(100));
+      // So much that nothing is damped here.
+      std::fill(limit.max_acceleration, limit.max_acceleration + max_joints, Real(1e6));
       Real found[max_joints] = {};
       ASSERT_EQ(joint_velocities(arm, q, asked, limit, found), Status::ok) << g.joint_count;
       const Velocity reached = velocity_of(g, q, found);
@@ -232,14 +237,15 @@ TYPED_TEST(Forms, VelocitiesStayBoundedIntoASingularity) {
     this->draw(g, random, q);
     Real asked[6];
     for (Real& v : asked) v = static_cast<Real>(random.symmetric(0.2));
-    Real limit[max_joints];
-    std::fill(limit, limit + max_joints, Real(1.5));
+    JointRateLimits<Real> limit{};
+    std::fill(limit.max_velocity, limit.max_velocity + max_joints, Real(1.5));
+    std::fill(limit.max_acceleration, limit.max_acceleration + max_joints, Real(10));
     int short_of_it = 0;
     for (int decade = 0; decade <= 16; ++decade) {
       q[4] = decade == 16 ? Real(0) : static_cast<Real>(std::pow(10.0, -decade));
       Real found[max_joints] = {};
       const Status status = joint_velocities(arm, q, asked, limit, found);
-      for (int i = 0; i < 6; ++i) EXPECT_LE(std::fabs(found[i]), limit[i]);
+      for (int i = 0; i < 6; ++i) EXPECT_LE(std::fabs(found[i]), limit.max_velocity[i]);
       ASSERT_TRUE(status == Status::ok || status == Status::near_singular || status == Status::step_limited);
       if (status != Status::ok) ++short_of_it;
       const Velocity reached = velocity_of(g, q, found);

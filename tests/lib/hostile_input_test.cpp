@@ -51,16 +51,18 @@ class HostileInput : public ::testing::Test {
 
   void SetUp() override {
     Random random(81);
-    ASSERT_EQ(make_compensator(ur5(), with_errors(ur5(), random, 1e-3, 0.1 * deg), model), Status::ok);
+    ASSERT_EQ(make_calibrated_arm(ur5(), with_errors(ur5(), random, 1e-3, 0.1 * deg), model), Status::ok);
     options = default_solution_options(model.corrected);
     tick_options = default_tick_options(model.corrected);
     tick_options.posture.gain = Real(0.1);
-    state = rest(model, true);
-    state.progress = Real(0.5);
+    ASSERT_EQ(start_at_rest(model, Model::nominal, state), Status::ok);
+    ASSERT_EQ(start_ramp(state, model, Model::corrected, 10), Status::ok);
+    for (int n = 0; n < 5; ++n) ASSERT_EQ(advance_ramp(state), Status::ok);
     for (std::size_t i = 0; i < 6; ++i) {
       joints.q[i] = Real(0.1) + Real(0.2) * static_cast<Real>(i);
       nominal.q[i] = joints.q[i];
-      limit[i] = Real(1);
+      limits.max_velocity[i] = Real(1);
+      limits.max_acceleration[i] = Real(10);
       velocity[i] = Real(0.1);
     }
     ASSERT_EQ(forward(model.corrected, joints.q, target), Status::ok);
@@ -138,14 +140,14 @@ class HostileInput : public ::testing::Test {
     };
   }
 
-  CompensatorModel<Real> model{};
+  CalibratedArm<Real> model{};
   SolutionOptions<Real> options{};
   TickOptions<Real> tick_options{};
-  CompensatorState<Real> state{};
+  Compensator<Real> state{};
   Pose<Real> target{};
   Joints joints{};
   Joints nominal{};
-  Real limit[max_joints] = {};
+  JointRateLimits<Real> limits{};
   Real velocity[6] = {};
 };
 using Reals = ::testing::Types<double, float>;
@@ -225,19 +227,18 @@ TYPED_TEST(HostileInput, OfTheCompensator) {
   const TickOptions<Real>& how = this->tick_options;
   this->joints.q[1] += Real(0.01);
   const auto first = this->in_place([&](Real* q) {
-    return pose_to_joints(this->model, this->state, how, this->target, q);
+    return pose_to_joints(this->state, how, this->target, q);
   });
   const auto second = this->in_place([&](Real* q) {
-    return joints_to_joints(this->model, this->state, how, this->nominal.q, q);
+    return joints_to_joints(this->state, how, this->nominal.q, q);
   });
   const auto third = this->in_place([&](Real* q) {
     Pose<Real> command{};
-    return pose_to_pose(this->model, this->state, how, this->target, q, command);
+    return pose_to_pose(this->state, how, this->target, q, command);
   });
   for (const auto& form : {first, second, third}) {
     this->attack("joints", this->of(this->joints.q, 6), form);
     this->attack("options", this->of(this->tick_options), form);
-    this->attack("progress", {&this->state.progress}, form);
   }
   this->attack("first form, target", this->of_target(), first);
   this->attack("second form, nominal joints", this->of(this->nominal.q, 6), second);
@@ -245,31 +246,35 @@ TYPED_TEST(HostileInput, OfTheCompensator) {
   this->attack("third form, command", this->of_target(), this->template filling<Pose<Real>>([&](Pose<Real>& command) {
     Real q[max_joints];
     std::copy(this->joints.q, this->joints.q + max_joints, q);
-    return pose_to_pose(this->model, this->state, how, this->target, q, command);
+    return pose_to_pose(this->state, how, this->target, q, command);
   }));
 }
 
-TYPED_TEST(HostileInput, OfTheRamp) {
+TYPED_TEST(HostileInput, OfTheFrames) {
   using Real = TypeParam;
-  Real seconds = Real(0.5);
-  ASSERT_EQ(start_ramp(this->state, false, seconds), Status::ok);
-  CompensatorState<Real> given = this->state;
-  const auto moved = [&](const std::function<Status(CompensatorState<Real>&)>& call) {
-    return [&given, call] {
-      CompensatorState<Real> out = given;
-      const Status status = call(out);
-      return Outcome{status, same_bytes(out, given), all_finite<Real>(out)};
-    };
+  Frames<Real> frames{this->target, this->target};
+  Compensator<Real> out;
+  const auto start = [&] {
+    out = this->state;
+    const Status status = start_frame_ramp(out, frames, 7);
+    const bool untouched = same_bytes(out, this->state);
+    bool finite = true;
+    Real q[6];
+    std::copy(this->joints.q, this->joints.q + 6, q);
+    if (status == Status::ok) {
+      EXPECT_EQ(advance_ramp(out), Status::ok);
+      finite = all_finite<Real>(out.frames) && all_finite<Real>(out.arm.last_T_flange);
+    }
+    return Outcome{status, untouched, finite};
   };
-  const auto ramp = moved([&](CompensatorState<Real>& out) { return start_ramp(out, true, seconds); });
-  const auto step = moved([&](CompensatorState<Real>& out) { return advance(out, seconds); });
-  this->attack("start_ramp", {&seconds, &given.progress}, ramp);
-  seconds = Real(0.01);
-  given.rate = Real(2);
-  this->attack("advance", {&seconds, &given.progress, &given.target}, step);
-  for (const Real rate : {this->nan, this->infinity, -this->infinity, Real(-1)}) {
-    given.rate = rate;
-    EXPECT_TRUE(step().status == Status::bad_input && step().untouched) << rate;
+  for (Pose<Real>* pose : {&frames.base_T_user, &frames.flange_T_tool}) {
+    std::vector<Real*> slots = this->of(pose->quaternion, 4);
+    for (Real& p : pose->position_m) slots.push_back(&p);
+    this->attack("frames", slots, start);
+    this->attack("multiply", slots, this->template filling<Pose<Real>>([&](Pose<Real>& product) {
+      return multiply(*pose, this->target, product);
+    }));
+    this->attack("invert", slots, this->template filling<Pose<Real>>([&](Pose<Real>& back) { return invert(*pose, back); }));
   }
 }
 
@@ -279,11 +284,21 @@ TYPED_TEST(HostileInput, OfTheVelocities) {
     Real joint[6];
   };
   const auto call = this->template filling<Velocities>([&](Velocities& out) {
-    return joint_velocities(this->model.corrected, this->joints.q, this->velocity, this->limit, out.joint);
+    return joint_velocities(this->model.corrected, this->joints.q, this->velocity, this->limits, out.joint);
   });
-  this->attack("joints", this->of(this->joints.q, 6), call);
-  this->attack("flange velocity", this->of(this->velocity, 6), call);
-  this->attack("limits", this->of(this->limit, 6), call);
+  const auto with_ramp = this->template filling<Velocities>([&](Velocities& out) {
+    return joint_velocities(this->state, this->joints.q, this->velocity, Real(0.001), this->limits, out.joint);
+  });
+  const auto accelerations = this->template filling<Velocities>([&](Velocities& out) {
+    return joint_accelerations(this->model.corrected, this->joints.q, this->joints.q, this->velocity, this->limits, out.joint);
+  });
+  for (const auto& form : {call, with_ramp, accelerations}) {
+    this->attack("joints", this->of(this->joints.q, 6), form);
+    this->attack("flange velocity", this->of(this->velocity, 6), form);
+    this->attack("acceleration limits", this->of(this->limits.max_acceleration, 6), form);
+  }
+  this->attack("velocity limits", this->of(this->limits.max_velocity, 6), call);
+  this->attack("velocity limits", this->of(this->limits.max_velocity, 6), with_ramp);
 }
 
 // Geometries are in double for both precisions.
@@ -300,17 +315,17 @@ TYPED_TEST(HostileInput, OfTheGeometry) {
   g.joint[6] = g.joint[7] = Joint{};
   Arm<Real> before;
   std::memset(&before, 0x3B, sizeof before);
-  CompensatorModel<Real> model_before;
+  CalibratedArm<Real> model_before;
   std::memset(&model_before, 0x3B, sizeof model_before);
   Arm<Real> good = before;
   ASSERT_EQ(make_arm(g, good), Status::ok);
   const auto expect_refused = [&](const char* what) {
     Arm<Real> arm = before;
-    CompensatorModel<Real> made = model_before;
+    CalibratedArm<Real> made = model_before;
     EXPECT_EQ(check_geometry(g), Status::bad_input) << what;
     EXPECT_EQ(make_arm(g, arm), Status::bad_input) << what;
-    EXPECT_EQ(make_compensator(g, g, made), Status::bad_input) << what;
-    EXPECT_EQ(make_compensator(ur5(), g, made), Status::bad_input) << what;
+    EXPECT_EQ(make_calibrated_arm(g, g, made), Status::bad_input) << what;
+    EXPECT_EQ(make_calibrated_arm(ur5(), g, made), Status::bad_input) << what;
     EXPECT_TRUE(same_bytes(arm, before) && same_bytes(made, model_before)) << what;
   };
   std::vector<double*> slots;

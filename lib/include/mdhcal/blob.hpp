@@ -69,10 +69,8 @@ struct Authentication {
   std::uint8_t signature[blob_layout::signature_size];
 };
 
-/// The decoded content of a blob. Plain data.
-struct BlobContent {
-  Geometry geometry;             ///< corrected: what the arm is
-  Link nominal[max_joints];      ///< what its drawing says; joints and flange as in `geometry`
+/// What a blob says beside the geometry. Plain data.
+struct BlobDescription {
   char name[blob_layout::name_size];      ///< robot, UTF-8, ends with a zero byte
   char serial[blob_layout::serial_size];  ///< likewise; empty if none
   std::int32_t has_base;         ///< 1 if tracker_T_base holds
@@ -83,6 +81,12 @@ struct BlobContent {
   std::uint32_t security_counter; ///< a loader refuses a blob below its stored minimum
   Tolerances tolerances;
   BlobProvenance provenance;
+};
+
+/// The decoded content of a blob. Plain data.
+struct BlobContent : BlobDescription {
+  Geometry geometry;             ///< corrected: what the arm is
+  Link nominal[max_joints];      ///< what its drawing says; joints and flange as in `geometry`
   std::uint32_t arithmetic_id;   ///< of the library that computed the vectors
   std::int32_t double_vector_count, float_vector_count;  ///< 0 ... max_vectors
   SelfTestVector<double> double_vector[max_vectors];

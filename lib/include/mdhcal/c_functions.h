@@ -4,15 +4,15 @@
  * outputs are untouched.
  */
 
-/* Storage of a model and of a loop's state; the double is there for alignment. */
-typedef union MDHCAL_C_NAME(model) {
+/* Storage of a calibrated arm and of a compensator; the double is there for alignment. */
+typedef union MDHCAL_C_NAME(calibrated_arm) {
   double align;
-  unsigned char bytes[MDHCAL_MODEL_SIZE];
-} MDHCAL_C_NAME(model);
-typedef union MDHCAL_C_NAME(state) {
+  unsigned char bytes[MDHCAL_ARM_BYTES];
+} MDHCAL_C_NAME(calibrated_arm);
+typedef union MDHCAL_C_NAME(compensator) {
   double align;
-  unsigned char bytes[MDHCAL_STATE_SIZE];
-} MDHCAL_C_NAME(state);
+  unsigned char bytes[MDHCAL_COMPENSATOR_BYTES];
+} MDHCAL_C_NAME(compensator);
 
 /* As struct Pose, TickOptions with its parts, TickReport and Solutions of the C++ headers, whose comments hold. */
 typedef struct MDHCAL_C_NAME(pose) {
@@ -53,49 +53,78 @@ typedef struct MDHCAL_C_NAME(solutions) {
   MDHCAL_REAL_TYPE distance[MDHCAL_MAX_SOLUTIONS];
 } MDHCAL_C_NAME(solutions);
 
-/* Decodes a blob into a model and runs its self-test. `model_size` is sizeof *model and `abi_version`
- * MDHCAL_ABI_VERSION of the header that the caller was compiled with: another one is MDHCAL_BAD_INPUT. Returns
- * MDHCAL_OK; MDHCAL_SELF_TEST_TOLERANCE (the model is usable: another arithmetic, within tolerance);
- * MDHCAL_BAD_ENVIRONMENT; MDHCAL_SELF_TEST_FAILED; or the decoder's refusal; then the model is untouched. `demands` may be
- * NULL. Needs about 8 KiB of stack; once, before the loop. */
-int32_t MDHCAL_C_NAME(load)(MDHCAL_C_NAME(model)* model, size_t model_size, uint32_t abi_version, const uint8_t* blob,
-                            size_t blob_size, const mdhcal_demands* demands);
-/* 1 ... 8, or 0 if the model was not loaded. */
-int32_t MDHCAL_C_NAME(joint_count)(const MDHCAL_C_NAME(model)* model);
+typedef struct MDHCAL_C_NAME(rate_limits) {
+  MDHCAL_REAL_TYPE max_velocity[MDHCAL_MAX_JOINTS];      /* [rad/s] or [m/s] */
+  MDHCAL_REAL_TYPE max_acceleration[MDHCAL_MAX_JOINTS];  /* [rad/s^2] or [m/s^2] */
+} MDHCAL_C_NAME(rate_limits);
 
-/* base_T_flange at q; `which` is MDHCAL_NOMINAL or MDHCAL_CORRECTED. `jacobian` [8][6], a row a joint, may be NULL. */
-int32_t MDHCAL_C_NAME(forward)(const MDHCAL_C_NAME(model)* model, int32_t which, const MDHCAL_REAL_TYPE* q,
+/* load() of mdhcal/calibrated_arm.hpp. `arm_size` is sizeof *arm and `abi_version` MDHCAL_ABI_VERSION of the header that the
+ * caller was compiled with: another one is MDHCAL_BAD_INPUT. mdhcal_usable() says of the status whether the arm may be
+ * used; otherwise it is untouched. `demands` may be NULL: the blob's serial, signature and counter are then not looked at.
+ * Needs about 8 KiB of stack; once, before the loop. */
+int32_t MDHCAL_C_NAME(load)(MDHCAL_C_NAME(calibrated_arm)* arm, size_t arm_size, uint32_t abi_version,
+                            const uint8_t* blob, size_t blob_size, const mdhcal_demands* demands);
+/* 1 ... 8, or 0 if the arm was not loaded. */
+int32_t MDHCAL_C_NAME(joint_count)(const MDHCAL_C_NAME(calibrated_arm)* arm);
+/* Kind and limits of joint 0 ... joint_count - 1 on the corrected model. */
+int32_t MDHCAL_C_NAME(describe_joint)(const MDHCAL_C_NAME(calibrated_arm)* arm, int32_t index, mdhcal_joint* joint);
+int32_t MDHCAL_C_NAME(describe)(const MDHCAL_C_NAME(calibrated_arm)* arm, mdhcal_description* description);
+/* The calibrated target point of this name as flange_T_target, not turned: a tool for start_frame_ramp(). */
+int32_t MDHCAL_C_NAME(find_target)(const MDHCAL_C_NAME(calibrated_arm)* arm, const char* name,
+                                   MDHCAL_C_NAME(pose)* flange_T_target);
+
+/* base_T_flange at q; `model` is MDHCAL_NOMINAL or MDHCAL_CORRECTED. `jacobian` [8][6], a row a joint, may be NULL. */
+int32_t MDHCAL_C_NAME(forward)(const MDHCAL_C_NAME(calibrated_arm)* arm, int32_t model, const MDHCAL_REAL_TYPE* q,
                                MDHCAL_C_NAME(pose)* base_T_flange, MDHCAL_REAL_TYPE (*jacobian)[6]);
+/* base_T_0 (identity), base_T_1 ... base_T_N, base_T_flange: joint_count + 2 poses. */
+int32_t MDHCAL_C_NAME(link_frames)(const MDHCAL_C_NAME(calibrated_arm)* arm, int32_t model, const MDHCAL_REAL_TYPE* q,
+                                   MDHCAL_C_NAME(pose)* frames);
+/* multiply() and invert() of mdhcal/pose.hpp. */
+int32_t MDHCAL_C_NAME(multiply)(const MDHCAL_C_NAME(pose)* a_T_b, const MDHCAL_C_NAME(pose)* b_T_c,
+                                MDHCAL_C_NAME(pose)* a_T_c);
+int32_t MDHCAL_C_NAME(invert)(const MDHCAL_C_NAME(pose)* a_T_b, MDHCAL_C_NAME(pose)* b_T_a);
 
-/* A loop's state at rest on one of the two models. `state_size` is sizeof *state. */
-int32_t MDHCAL_C_NAME(start)(MDHCAL_C_NAME(state)* state, size_t state_size, const MDHCAL_C_NAME(model)* model,
-                             int32_t which);
-/* start_ramp() and advance() of mdhcal/compensator.hpp. */
-int32_t MDHCAL_C_NAME(start_ramp)(MDHCAL_C_NAME(state)* state, int32_t which, MDHCAL_REAL_TYPE duration_s);
-int32_t MDHCAL_C_NAME(advance)(MDHCAL_C_NAME(state)* state, MDHCAL_REAL_TYPE period_s);
+/* The functions of mdhcal/compensator.hpp. `size` is sizeof *compensator. */
+int32_t MDHCAL_C_NAME(start_at_rest)(MDHCAL_C_NAME(compensator)* compensator, size_t size,
+                                     const MDHCAL_C_NAME(calibrated_arm)* arm, int32_t model);
+int32_t MDHCAL_C_NAME(start_ramp)(MDHCAL_C_NAME(compensator)* compensator, const MDHCAL_C_NAME(calibrated_arm)* arm,
+                                  int32_t model, uint32_t ticks);
+int32_t MDHCAL_C_NAME(start_frame_ramp)(MDHCAL_C_NAME(compensator)* compensator,
+                                        const MDHCAL_C_NAME(pose)* base_T_user,
+                                        const MDHCAL_C_NAME(pose)* flange_T_tool, uint32_t ticks);
+int32_t MDHCAL_C_NAME(advance_ramp)(MDHCAL_C_NAME(compensator)* compensator);
+/* Ticks until it is at rest; 0 for one that was not started, too. */
+uint32_t MDHCAL_C_NAME(ramp_ticks_left)(const MDHCAL_C_NAME(compensator)* compensator);
 
-/* default_tick_options() of the corrected model. */
-int32_t MDHCAL_C_NAME(default_tick_options)(const MDHCAL_C_NAME(model)* model, MDHCAL_C_NAME(tick_options)* options);
+/* default_tick_options() of mdhcal/calibrated_arm.hpp: the blob's tolerances, and step limits for the loop's period [s]. */
+int32_t MDHCAL_C_NAME(default_tick_options)(const MDHCAL_C_NAME(calibrated_arm)* arm, MDHCAL_REAL_TYPE period_s,
+                                            MDHCAL_C_NAME(tick_options)* options);
 
 /* The three forms of the compensator, one tick each; `report` may be NULL. */
-int32_t MDHCAL_C_NAME(pose_to_joints)(const MDHCAL_C_NAME(model)* model, const MDHCAL_C_NAME(state)* state,
+int32_t MDHCAL_C_NAME(pose_to_joints)(const MDHCAL_C_NAME(compensator)* compensator,
                                       const MDHCAL_C_NAME(tick_options)* options,
-                                      const MDHCAL_C_NAME(pose)* base_T_flange, MDHCAL_REAL_TYPE* q,
+                                      const MDHCAL_C_NAME(pose)* user_T_tool, MDHCAL_REAL_TYPE* q,
                                       MDHCAL_C_NAME(tick_report)* report);
-int32_t MDHCAL_C_NAME(joints_to_joints)(const MDHCAL_C_NAME(model)* model, const MDHCAL_C_NAME(state)* state,
+int32_t MDHCAL_C_NAME(joints_to_joints)(const MDHCAL_C_NAME(compensator)* compensator,
                                         const MDHCAL_C_NAME(tick_options)* options, const MDHCAL_REAL_TYPE* nominal_q,
                                         MDHCAL_REAL_TYPE* q, MDHCAL_C_NAME(tick_report)* report);
-int32_t MDHCAL_C_NAME(pose_to_pose)(const MDHCAL_C_NAME(model)* model, const MDHCAL_C_NAME(state)* state,
-                                    const MDHCAL_C_NAME(tick_options)* options, const MDHCAL_C_NAME(pose)* base_T_flange,
-                                    MDHCAL_REAL_TYPE* q, MDHCAL_C_NAME(pose)* command,
-                                    MDHCAL_C_NAME(tick_report)* report);
+int32_t MDHCAL_C_NAME(pose_to_pose)(const MDHCAL_C_NAME(compensator)* compensator,
+                                    const MDHCAL_C_NAME(tick_options)* options,
+                                    const MDHCAL_C_NAME(pose)* user_T_tool, MDHCAL_REAL_TYPE* q,
+                                    MDHCAL_C_NAME(pose)* command, MDHCAL_C_NAME(tick_report)* report);
 
-/* joint_velocities(), find_solutions() and cold_start() on the corrected model. */
-int32_t MDHCAL_C_NAME(joint_velocities)(const MDHCAL_C_NAME(model)* model, const MDHCAL_REAL_TYPE* q,
-                                        const MDHCAL_REAL_TYPE flange_velocity[6],
-                                        const MDHCAL_REAL_TYPE* max_velocity, MDHCAL_REAL_TYPE* velocity);
-int32_t MDHCAL_C_NAME(find_solutions)(const MDHCAL_C_NAME(model)* model, const MDHCAL_C_NAME(goal_options)* goal,
+/* joint_velocities() with the ramp's motion taken out, and joint_accelerations() on the corrected model. */
+int32_t MDHCAL_C_NAME(joint_velocities)(const MDHCAL_C_NAME(compensator)* compensator, const MDHCAL_REAL_TYPE* q,
+                                        const MDHCAL_REAL_TYPE tool_velocity[6], MDHCAL_REAL_TYPE period_s,
+                                        const MDHCAL_C_NAME(rate_limits)* limits, MDHCAL_REAL_TYPE* velocity);
+int32_t MDHCAL_C_NAME(joint_accelerations)(const MDHCAL_C_NAME(calibrated_arm)* arm, const MDHCAL_REAL_TYPE* q,
+                                           const MDHCAL_REAL_TYPE* velocity,
+                                           const MDHCAL_REAL_TYPE flange_acceleration[6],
+                                           const MDHCAL_C_NAME(rate_limits)* limits, MDHCAL_REAL_TYPE* acceleration);
+
+/* find_solutions() and cold_start() on the corrected model. */
+int32_t MDHCAL_C_NAME(find_solutions)(const MDHCAL_C_NAME(calibrated_arm)* arm, const MDHCAL_C_NAME(goal_options)* goal,
                                       int32_t restarts, const MDHCAL_C_NAME(pose)* base_T_flange,
                                       const MDHCAL_REAL_TYPE* posture, MDHCAL_C_NAME(solutions)* solutions);
-int32_t MDHCAL_C_NAME(cold_start)(const MDHCAL_C_NAME(model)* model, const MDHCAL_C_NAME(goal_options)* goal,
+int32_t MDHCAL_C_NAME(cold_start)(const MDHCAL_C_NAME(calibrated_arm)* arm, const MDHCAL_C_NAME(goal_options)* goal,
                                   int32_t restarts, const MDHCAL_C_NAME(pose)* base_T_flange, MDHCAL_REAL_TYPE* q);

@@ -1,82 +1,118 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "mdhcal/inverse.hpp"
+#include "mdhcal/calibrated_arm.hpp"
 #include "mdhcal/kinematics.hpp"
+#include "mdhcal/pose.hpp"
+#include "mdhcal/velocities.hpp"
 
 namespace mdhcal {
 
-/// What a compensator holds constant: the two models. Shared by any number of loops; plain data.
+/// Where the target poses of a loop are meant: the pose of the tool in the user frame.
 template <class Real>
-struct CompensatorModel {
-  Arm<Real> nominal;    ///< the geometry that the controller believes
-  Arm<Real> corrected;  ///< the geometry as it was calibrated; joints, signs, couplings and limits as in `nominal`
+struct Frames {
+  Pose<Real> base_T_user;    ///< the user (work piece) frame in the robot's base frame
+  Pose<Real> flange_T_tool;  ///< the tool centre point in the flange frame
 };
 
-/// The part of a loop that changes: how far the ramp between the models has come. Plain data; one a loop.
+/// Both frames the identity: base_T_flange.
 template <class Real>
-struct CompensatorState {
-  Real progress;  ///< 0: nominal, 1: corrected; between them during a ramp, in proportion to time
-  Real target;    ///< where the ramp goes, 0 or 1
-  Real rate;      ///< of the progress [1/s]
+inline constexpr Frames<Real> identity_frames{identity_pose<Real>, identity_pose<Real>};
+
+/// The parameters of an arm and its frames that a ramp moves: of each link alpha, a, theta, d, beta; the joints' limits, the
+/// reach; flange, tool and user frame as quaternion and position.
+template <class Real>
+struct RampParameters {
+  Real link[max_joints][5];
+  Real min[max_joints], max[max_joints], reach_m;
+  Pose<Real> pose[3];
 };
 
-/// Prepares both models from one set of joints. Returns ok, bad_input (a geometry does not pass check_geometry(), or the two differ
-/// in joint count, kinds, signs or couplings), bad_environment (check_environment()); `model` untouched unless ok.
-Status make_compensator(const Geometry& nominal, const Geometry& corrected, CompensatorModel<double>& model) noexcept;
-Status make_compensator(const Geometry& nominal, const Geometry& corrected, CompensatorModel<float>& model) noexcept;
+/// One loop's compensator: the arm that the controller believes and the one that the loop is on, which a ramp moves. It
+/// holds copies, so that the CalibratedArm may go once a call has returned. Plain data, some 5 KiB (float 3); one a loop.
+/// Its functions are for the thread that runs the loop: none of them locks, and none may run beside another on the same
+/// compensator. What prepares a new calibration in another thread hands a finished CalibratedArm over to the loop's thread
+/// (a pointer in an atomic will do), which then calls start_ramp().
+template <class Real>
+struct Compensator {
+  std::uint32_t mark;          ///< what start_at_rest() leaves; every function refuses another with bad_input
+  std::uint32_t ticks_done;    ///< of the ramp
+  std::uint32_t ticks_total;   ///< equal to ticks_done: at rest
+  std::uint32_t ticks_fading;  ///< in which the velocity that the ramp began with goes to zero
+  Arm<Real> nominal;           ///< flange, no tool
+  Arm<Real> goal_arm;          ///< where the ramp goes; flange, no tool
+  Frames<Real> goal_frames;
+  RampParameters<Real> offset; ///< present less goal, as the ramp began
+  RampParameters<Real> rate;   ///< its change a tick, as the ramp began
+  Arm<Real> arm;               ///< the arm of this tick, the tool's frame in the place of the flange's
+  Frames<Real> frames;         ///< the frames of this tick
+  std::int32_t has_frames;     ///< 0 if both are the identity
+};
 
-/// A state at rest: on the corrected model if `corrected` is true, else on the nominal one.
-CompensatorState<double> rest(const CompensatorModel<double>& model, bool corrected) noexcept;
-CompensatorState<float> rest(const CompensatorModel<float>& model, bool corrected) noexcept;
+/// Puts a loop at rest on one model, with identity frames. Returns ok or bad_input (compensator untouched).
+Status start_at_rest(const CalibratedArm<double>& arm, Model model, Compensator<double>& compensator) noexcept;
+Status start_at_rest(const CalibratedArm<float>& arm, Model model, Compensator<float>& compensator) noexcept;
 
-/// Starts a ramp to the corrected or the nominal model that takes `duration_s` (0 ... 1e6) from one end to the other; from
-/// the middle of another ramp it goes on from there. The share of the corrected model is p^2 (3 - 2 p) of the progress
-/// p, so that the ramp begins and ends without a change of velocity. Returns ok or bad_input (state untouched).
-Status start_ramp(CompensatorState<double>& state, bool corrected, double duration_s) noexcept;
-Status start_ramp(CompensatorState<float>& state, bool corrected, float duration_s) noexcept;
+/// Starts a ramp of `ticks` ticks to a model of the same robot: of this blob, or of a new one. Every parameter (links,
+/// flange, limits that both have, frames) goes from where it is, at the velocity that it has, to its goal along a quintic,
+/// where it comes to rest: offset (1 - 10 s^3 + 15 s^4 - 6 s^5) + rate (s - 6 s^3 + 8 s^4 - 3 s^5), so that a ramp may be
+/// turned back or started anew in the middle of another without a jump of velocity. With 0 ticks it is there at once.
+/// The velocity of the ramp before fades within what that had left, so that nothing overshoots by more than 0.15 of it.
+/// Returns ok or bad_input (the joints differ in count, kinds, signs or couplings; compensator untouched).
+Status start_ramp(Compensator<double>& compensator, const CalibratedArm<double>& arm, Model model,
+                  std::uint32_t ticks) noexcept;
+Status start_ramp(Compensator<float>& compensator, const CalibratedArm<float>& arm, Model model,
+                  std::uint32_t ticks) noexcept;
 
-/// Lets the ramp go on by one tick of `period_s` (0 ... 1e3). Returns ok or bad_input (state untouched).
-Status advance(CompensatorState<double>& state, double period_s) noexcept;
-Status advance(CompensatorState<float>& state, float period_s) noexcept;
+/// The same to other frames, on the model that the loop is on or on its way to.
+Status start_frame_ramp(Compensator<double>& compensator, const Frames<double>& frames, std::uint32_t ticks) noexcept;
+Status start_frame_ramp(Compensator<float>& compensator, const Frames<float>& frames, std::uint32_t ticks) noexcept;
 
-/// First form, pose -> joints. Moves the joints q by one tick() towards base_T_flange on the model that the ramp has
-/// come to: between the two that is an arm whose every parameter is between theirs, so nothing jumps. Returns as tick().
-Status pose_to_joints(const CompensatorModel<double>& model, const CompensatorState<double>& state,
-                      const TickOptions<double>& options, const Pose<double>& base_T_flange, double* q,
-                      TickReport<double>* report = nullptr) noexcept;
-Status pose_to_joints(const CompensatorModel<float>& model, const CompensatorState<float>& state,
-                      const TickOptions<float>& options, const Pose<float>& base_T_flange, float* q,
-                      TickReport<float>* report = nullptr) noexcept;
+/// One tick of the ramp; nothing at rest. Returns ok or bad_input.
+Status advance_ramp(Compensator<double>& compensator) noexcept;
+Status advance_ramp(Compensator<float>& compensator) noexcept;
 
-/// Second form, nominal joints -> corrected joints: what the controller's own inverse gave, made true. `nominal_q` says
-/// which pose was meant; `q` holds the last corrected joints and receives the new ones (start it with nominal_q).
-/// Returns as tick(), on bad_input q is untouched.
-Status joints_to_joints(const CompensatorModel<double>& model, const CompensatorState<double>& state,
-                        const TickOptions<double>& options, const double* nominal_q, double* q,
-                        TickReport<double>* report = nullptr) noexcept;
-Status joints_to_joints(const CompensatorModel<float>& model, const CompensatorState<float>& state,
-                        const TickOptions<float>& options, const float* nominal_q, float* q,
-                        TickReport<float>* report = nullptr) noexcept;
+/// Ticks until the compensator is at rest; 0: it is.
+template <class Real>
+constexpr std::uint32_t ramp_ticks_left(const Compensator<Real>& compensator) noexcept {
+  return compensator.ticks_total - compensator.ticks_done;
+}
 
-/// Third form, pose -> the pose to command to a controller that keeps its nominal model, so that the arm as it is reaches
-/// base_T_flange. `q` holds the last joints and receives the new ones, as in pose_to_joints(). Returns as tick();
-/// `command` is written unless bad_input.
-Status pose_to_pose(const CompensatorModel<double>& model, const CompensatorState<double>& state,
-                    const TickOptions<double>& options, const Pose<double>& base_T_flange, double* q,
-                    Pose<double>& command, TickReport<double>* report = nullptr) noexcept;
-Status pose_to_pose(const CompensatorModel<float>& model, const CompensatorState<float>& state,
-                    const TickOptions<float>& options, const Pose<float>& base_T_flange, float* q,
-                    Pose<float>& command, TickReport<float>* report = nullptr) noexcept;
+/// First form, pose -> joints. Moves the joints q by one tick() towards user_T_tool (base_T_flange with identity frames)
+/// on the arm that the ramp has come to. Returns as tick().
+Status pose_to_joints(const Compensator<double>& compensator, const TickOptions<double>& options,
+                      const Pose<double>& user_T_tool, double* q, TickReport<double>* report = nullptr) noexcept;
+Status pose_to_joints(const Compensator<float>& compensator, const TickOptions<float>& options,
+                      const Pose<float>& user_T_tool, float* q, TickReport<float>* report = nullptr) noexcept;
 
-/// Joint velocities [rad/s or m/s] at the readings q for a velocity of the flange in the base frame: of its origin [m/s],
-/// then the angular one [rad/s]. Damped least squares with the least damping that keeps every |velocity| within
-/// `max_velocity` (> 0); redundant joints get the smallest velocities. Returns ok (the flange's velocity is met to
-/// 1e-9 relative, float 1e-4); near_singular, step_limited, or out_of_reach (an arm with fewer joints than the velocity
-/// needs), all usable and short of it; bad_input (velocities untouched).
-Status joint_velocities(const Arm<double>& arm, const double* q, const double* flange_velocity,
-                        const double* max_velocity, double* velocity) noexcept;
-Status joint_velocities(const Arm<float>& arm, const float* q, const float* flange_velocity,
-                        const float* max_velocity, float* velocity) noexcept;
+/// Second form, nominal joints -> corrected joints: what the controller's own inverse gave, made true. The corrected joints
+/// follow `nominal_q`, their branch and their turn: tick() seeks them from nominal_q, and q (in: last corrected joints, to
+/// begin with nominal_q; out: the new ones) goes there in a straight line of joints as far as the step limit lets it. A last
+/// joint whose nominal reading has wrapped by full turns is counted from the new turn. Returns as tick().
+Status joints_to_joints(const Compensator<double>& compensator, const TickOptions<double>& options,
+                        const double* nominal_q, double* q, TickReport<double>* report = nullptr) noexcept;
+Status joints_to_joints(const Compensator<float>& compensator, const TickOptions<float>& options, const float* nominal_q,
+                        float* q, TickReport<float>* report = nullptr) noexcept;
+
+/// Third form, pose -> the pose to command to a controller that keeps its nominal model (with the same frames), so that the
+/// arm as it is reaches user_T_tool. `q` as in pose_to_joints(). Returns as tick(); `command` is written unless bad_input.
+Status pose_to_pose(const Compensator<double>& compensator, const TickOptions<double>& options,
+                    const Pose<double>& user_T_tool, double* q, Pose<double>& command,
+                    TickReport<double>* report = nullptr) noexcept;
+Status pose_to_pose(const Compensator<float>& compensator, const TickOptions<float>& options,
+                    const Pose<float>& user_T_tool, float* q, Pose<float>& command,
+                    TickReport<float>* report = nullptr) noexcept;
+
+/// What the ramp itself does to the tool at the joints q: velocity of its origin [m], angular velocity [rad], both a tick and
+/// in the base frame, less those of the user frame's motion. Zero at rest. Returns ok or bad_input.
+Status ramp_motion(const Compensator<double>& compensator, const double* q, double* motion) noexcept;
+Status ramp_motion(const Compensator<float>& compensator, const float* q, float* motion) noexcept;
+
+/// joint_velocities() on the arm of this tick for a velocity of the tool in the user frame's axes, the ramp's own motion taken
+/// out of it. `period_s` is the loop's, > 0. Returns and errors as joint_velocities().
+Status joint_velocities(const Compensator<double>& compensator, const double* q, const double* tool_velocity,
+                        double period_s, const JointRateLimits<double>& limits, double* velocity) noexcept;
+Status joint_velocities(const Compensator<float>& compensator, const float* q, const float* tool_velocity,
+                        float period_s, const JointRateLimits<float>& limits, float* velocity) noexcept;
 
 }  // namespace mdhcal

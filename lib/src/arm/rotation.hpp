@@ -24,6 +24,18 @@ static inline void multiply(const Frame<Real>& a, const Frame<Real>& b, Frame<Re
   }
 }
 
+/// b_T_a, the inverse of a_T_b, into a place apart.
+static inline void invert(const Frame<Real>& a, Frame<Real>& b) {
+  for (int row = 0; row < 3; ++row) {
+    Real sum = 0;
+    for (int col = 0; col < 3; ++col) {
+      b.rotation[3 * row + col] = a.rotation[3 * col + row];
+      sum += a.rotation[3 * col + row] * a.position_m[col];
+    }
+    b.position_m[row] = -sum;
+  }
+}
+
 /// The pose of a frame. The quaternion comes from the largest of the four squared components, so that no
 /// cancellation is worse than a factor of four (Shepperd 1978), and is normalised, w >= 0.
 static inline void to_pose(const Frame<Real>& frame, Pose<Real>& pose) {

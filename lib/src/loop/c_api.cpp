@@ -3,12 +3,11 @@
 
 #include <cstring>
 
-#include "mdhcal/blob.hpp"
-#include "mdhcal/compensator.hpp"
-#include "mdhcal/environment.hpp"
-#include "mdhcal/self_test.hpp"
-#include "mdhcal/solutions.hpp"
+#include "mdhcal/mdhcal.hpp"
 #include "number/real.hpp"
+
+#include "arm/rotation.hpp"
+#include "loop/compensator_valid.hpp"
 
 #define MDHCAL_JOIN_(a, b) a##b
 #define MDHCAL_JOIN(a, b) MDHCAL_JOIN_(a, b)
@@ -20,41 +19,45 @@ namespace mdhcal {
 
 namespace {
 
-// Storage that was not initialised holds another number, save with a chance of 2^-32.
-constexpr std::uint32_t model_mark = sizeof(Real) == sizeof(double) ? 0x6D1F83A5U : 0x2B9C40E7U;
-constexpr std::uint32_t state_mark = sizeof(Real) == sizeof(double) ? 0xC45A7E19U : 0x91E3D60BU;
+static_assert(sizeof(CalibratedArm<Real>) <= sizeof(C(calibrated_arm)) && sizeof(Compensator<Real>) <= sizeof(C(compensator)));
+static_assert(alignof(CalibratedArm<Real>) <= alignof(C(calibrated_arm)) &&
+              alignof(Compensator<Real>) <= alignof(C(compensator)));
+static_assert(MDHCAL_MAX_JOINTS == max_joints && MDHCAL_MAX_SOLUTIONS == max_solutions && MDHCAL_MAX_TARGETS == max_targets);
+static_assert(sizeof(mdhcal_description) == sizeof(BlobDescription) && sizeof(mdhcal_provenance) == sizeof(BlobProvenance) &&
+              sizeof(mdhcal_target) == sizeof(Target) && sizeof(mdhcal_tolerances) == sizeof(Tolerances));
+static_assert(offsetof(mdhcal_description, target) == offsetof(BlobDescription, target) &&
+              offsetof(mdhcal_description, family) == offsetof(BlobDescription, family) &&
+              offsetof(mdhcal_description, provenance) == offsetof(BlobDescription, provenance) &&
+              offsetof(mdhcal_provenance, lambda) == offsetof(BlobProvenance, lambda));
 
-struct CModel {
-  std::uint32_t mark;
-  CompensatorModel<Real> models;
-};
-
-struct CState {
-  std::uint32_t mark;
-  CompensatorState<Real> ramp;
-};
-
-static_assert(sizeof(C(model)) == MDHCAL_MODEL_SIZE && sizeof(C(state)) == MDHCAL_STATE_SIZE);
-static_assert(sizeof(CModel) <= MDHCAL_MODEL_SIZE && sizeof(CState) <= MDHCAL_STATE_SIZE);
-static_assert(alignof(CModel) <= alignof(C(model)) && alignof(CState) <= alignof(C(state)));
-static_assert(MDHCAL_MAX_JOINTS == max_joints && MDHCAL_MAX_SOLUTIONS == max_solutions);
-
-// Whether storage may hold a CModel or a CState: a C program can make a pointer of any address.
+// Whether storage may hold what a C program says: it can make a pointer of any address.
 bool aligned(const void* storage) {
   return storage != nullptr && reinterpret_cast<std::uintptr_t>(storage) % alignof(double) == 0;
 }
 
-// Bytes that memcpy made a CModel of; void on the way, since nothing else is known of the storage.
-const CModel* model_in(const C(model)* storage) {
+// Storage that memcpy made an object of; void on the way, since nothing else is known of it.
+const CalibratedArm<Real>* arm_in(const C(calibrated_arm)* storage) {
   if (!aligned(storage)) return nullptr;
-  const CModel* model = static_cast<const CModel*>(static_cast<const void*>(storage));
-  return model->mark == model_mark ? model : nullptr;
+  const CalibratedArm<Real>* arm = static_cast<const CalibratedArm<Real>*>(static_cast<const void*>(storage));
+  return arm->nominal.mark == arm_mark<Real> && arm->corrected.mark == arm_mark<Real> ? arm : nullptr;
 }
 
-bool read_state(const C(state)* storage, CState& state) {
-  if (!aligned(storage)) return false;
-  std::memcpy(&state, storage, sizeof state);
-  return state.mark == state_mark;
+const Compensator<Real>* compensator_in(const C(compensator)* storage) {
+  if (!aligned(storage)) return nullptr;
+  const Compensator<Real>* compensator = static_cast<const Compensator<Real>*>(static_cast<const void*>(storage));
+  return valid(*compensator) ? compensator : nullptr;
+}
+
+Compensator<Real>* compensator_in(C(compensator)* storage) {
+  if (!aligned(storage)) return nullptr;
+  Compensator<Real>* compensator = static_cast<Compensator<Real>*>(static_cast<void*>(storage));
+  return valid(*compensator) ? compensator : nullptr;
+}
+
+const Arm<Real>* model_in(const C(calibrated_arm)* storage, std::int32_t model) {
+  const CalibratedArm<Real>* arm = arm_in(storage);
+  if (arm == nullptr || (model != MDHCAL_NOMINAL && model != MDHCAL_CORRECTED)) return nullptr;
+  return model == MDHCAL_CORRECTED ? &arm->corrected : &arm->nominal;
 }
 
 std::int32_t number(Status status) { return static_cast<std::int32_t>(status); }
@@ -112,28 +115,19 @@ std::int32_t finish(Status status, const TickReport<Real>& report, C(tick_report
   return number(status);
 }
 
+JointRateLimits<Real> from_c(const C(rate_limits)& limits) {
+  JointRateLimits<Real> out;
+  for (std::size_t j = 0; j < max_joints; ++j) {
+    out.max_velocity[j] = limits.max_velocity[j];
+    out.max_acceleration[j] = limits.max_acceleration[j];
+  }
+  return out;
+}
+
 // The C verifier behind the C++ one.
 bool verify_for_c(const std::uint8_t* message, std::size_t size, const std::uint8_t* signature, void* context) {
   const mdhcal_demands* demands = static_cast<const mdhcal_demands*>(context);
   return demands->verify(message, size, signature, demands->verify_context) == 1;
-}
-
-Status load(const std::uint8_t* blob, std::size_t blob_size, const mdhcal_demands* demands, CModel& loaded) {
-  DecodeOptions options;
-  mdhcal_demands copy{};
-  if (demands != nullptr) {
-    copy = *demands;
-    options.serial = copy.serial;
-    options.minimum_counter = copy.minimum_counter;
-    if (copy.verify != nullptr) options.verifier = {verify_for_c, &copy};
-  }
-  BlobContent model;
-  const Status status = decode(blob, blob_size, options, model);
-  if (status != Status::ok) return status;
-  Geometry nominal = model.geometry;
-  for (std::size_t i = 0; i < max_joints; ++i) nominal.link[i] = model.nominal[i];
-  const Status made = make_compensator(nominal, model.geometry, loaded.models);
-  return made == Status::ok ? self_test(model, loaded.models.corrected) : made;
 }
 
 }  // namespace
@@ -144,147 +138,204 @@ extern "C" {
 
 using namespace mdhcal;
 
-std::int32_t C(load)(C(model)* model, std::size_t model_size, std::uint32_t abi_version, const std::uint8_t* blob,
+std::int32_t C(load)(C(calibrated_arm)* arm, std::size_t arm_size, std::uint32_t abi_version, const std::uint8_t* blob,
                      std::size_t blob_bytes, const mdhcal_demands* demands) {
-  if (!aligned(model) || blob == nullptr || model_size != sizeof *model || abi_version != MDHCAL_ABI_VERSION) {
-    return refused;
+  if (!aligned(arm) || arm_size != sizeof *arm || abi_version != MDHCAL_ABI_VERSION) return refused;
+  DecodeOptions options;
+  mdhcal_demands copy{};
+  if (demands != nullptr) {
+    copy = *demands;
+    options.serial = copy.serial;
+    options.minimum_counter = copy.minimum_counter;
+    if (copy.verify != nullptr) options.verifier = {verify_for_c, &copy};
   }
-  CModel loaded;
-  loaded.mark = model_mark;
-  const Status status = load(blob, blob_bytes, demands, loaded);
-  if (status == Status::ok || status == Status::self_test_tolerance) std::memcpy(model, &loaded, sizeof loaded);
-  return number(status);
+  return number(load(blob, blob_bytes, options, *static_cast<CalibratedArm<Real>*>(static_cast<void*>(arm))));
 }
 
-std::int32_t C(joint_count)(const C(model)* model) {
-  const CModel* m = model_in(model);
-  return m == nullptr ? 0 : m->models.corrected.joint_count;
+std::int32_t C(joint_count)(const C(calibrated_arm)* arm) {
+  const CalibratedArm<Real>* a = arm_in(arm);
+  return a == nullptr ? 0 : a->corrected.joint_count;
 }
 
-std::int32_t C(forward)(const C(model)* model, std::int32_t which, const Real* q, C(pose)* base_T_flange,
+std::int32_t C(describe_joint)(const C(calibrated_arm)* arm, std::int32_t index, mdhcal_joint* joint) {
+  const CalibratedArm<Real>* a = arm_in(arm);
+  if (a == nullptr || joint == nullptr || index < 0 || index >= a->corrected.joint_count) return refused;
+  const std::uint32_t shift = static_cast<std::uint32_t>(index);
+  joint->slides = static_cast<std::int32_t>((a->corrected.prismatic_mask >> shift) & 1U);
+  joint->has_min = static_cast<std::int32_t>((a->corrected.min_mask >> shift) & 1U);
+  joint->has_max = static_cast<std::int32_t>((a->corrected.max_mask >> shift) & 1U);
+  joint->min = joint->has_min != 0 ? static_cast<double>(a->corrected.min[index]) : 0.0;
+  joint->max = joint->has_max != 0 ? static_cast<double>(a->corrected.max[index]) : 0.0;
+  return number(Status::ok);
+}
+
+std::int32_t C(describe)(const C(calibrated_arm)* arm, mdhcal_description* description) {
+  const CalibratedArm<Real>* a = arm_in(arm);
+  if (a == nullptr || description == nullptr) return refused;
+  std::memcpy(description, &a->description, sizeof *description);
+  return number(Status::ok);
+}
+
+std::int32_t C(find_target)(const C(calibrated_arm)* arm, const char* name, C(pose)* flange_T_target) {
+  const CalibratedArm<Real>* a = arm_in(arm);
+  const Target* target = a == nullptr ? nullptr : find_target(a->description, name);
+  if (target == nullptr || flange_T_target == nullptr) return refused;
+  to_c(identity_pose<Real>, *flange_T_target);
+  for (int k = 0; k < 3; ++k) flange_T_target->position_m[k] = static_cast<Real>(target->flange_p_m[k]);
+  return number(Status::ok);
+}
+
+std::int32_t C(forward)(const C(calibrated_arm)* arm, std::int32_t model, const Real* q, C(pose)* base_T_flange,
                         Real (*jacobian)[6]) {
-  const CModel* m = model_in(model);
-  if (m == nullptr || q == nullptr || base_T_flange == nullptr) return refused;
-  if (which != MDHCAL_NOMINAL && which != MDHCAL_CORRECTED) return refused;
-  const Arm<Real>& arm = which == MDHCAL_CORRECTED ? m->models.corrected : m->models.nominal;
+  const Arm<Real>* a = model_in(arm, model);
+  if (a == nullptr || q == nullptr || base_T_flange == nullptr) return refused;
   Pose<Real> pose;
-  if (jacobian == nullptr) {
-    const Status status = forward(arm, q, pose);
-    if (status == Status::ok) to_c(pose, *base_T_flange);
-    return number(status);
-  }
   Jacobian<Real> columns;
-  const Status status = forward(arm, q, pose, columns);
+  const Status status = jacobian == nullptr ? forward(*a, q, pose) : forward(*a, q, pose, columns);
   if (status != Status::ok) return number(status);
   to_c(pose, *base_T_flange);
-  for (std::int32_t j = 0; j < arm.joint_count; ++j) {
+  for (std::int32_t j = 0; jacobian != nullptr && j < a->joint_count; ++j) {
     for (int k = 0; k < 6; ++k) jacobian[j][k] = columns.column[j][k];
   }
   return number(status);
 }
 
-std::int32_t C(start)(C(state)* state, std::size_t state_size, const C(model)* model, std::int32_t which) {
-  const CModel* m = model_in(model);
-  if (m == nullptr || !aligned(state) || state_size != sizeof *state) return refused;
-  if (which != MDHCAL_NOMINAL && which != MDHCAL_CORRECTED) return refused;
-  const CState made{state_mark, rest(m->models, which == MDHCAL_CORRECTED)};
-  std::memcpy(state, &made, sizeof made);
-  return number(Status::ok);
-}
-
-std::int32_t C(start_ramp)(C(state)* state, std::int32_t which, Real duration_s) {
-  CState s;
-  if (!read_state(state, s) || (which != MDHCAL_NOMINAL && which != MDHCAL_CORRECTED)) return refused;
-  const Status status = start_ramp(s.ramp, which == MDHCAL_CORRECTED, duration_s);
-  std::memcpy(state, &s, sizeof s);
-  return number(status);
-}
-
-std::int32_t C(advance)(C(state)* state, Real period_s) {
-  CState s;
-  if (!read_state(state, s)) return refused;
-  const Status status = advance(s.ramp, period_s);
-  std::memcpy(state, &s, sizeof s);
-  return number(status);
-}
-
-std::int32_t C(default_tick_options)(const C(model)* model, C(tick_options)* options) {
-  const CModel* m = model_in(model);
-  if (m == nullptr || options == nullptr) return refused;
-  to_c(default_tick_options(m->models.corrected), *options);
-  return number(Status::ok);
-}
-
-std::int32_t C(pose_to_joints)(const C(model)* model, const C(state)* state, const C(tick_options)* options,
-                               const C(pose)* base_T_flange, Real* q, C(tick_report)* report) {
-  const CModel* m = model_in(model);
-  CState s;
-  if (m == nullptr || !read_state(state, s) || options == nullptr || base_T_flange == nullptr || q == nullptr) {
-    return refused;
+std::int32_t C(link_frames)(const C(calibrated_arm)* arm, std::int32_t model, const Real* q, C(pose)* frames) {
+  const Arm<Real>* a = model_in(arm, model);
+  if (a == nullptr || q == nullptr || frames == nullptr) return refused;
+  Frame<Real> along[max_joints + 2];
+  const Status status = link_frames(*a, q, along);
+  for (std::int32_t i = 0; status == Status::ok && i < a->joint_count + 2; ++i) {
+    Pose<Real> pose;
+    to_pose(along[i], pose);
+    to_c(pose, frames[i]);
   }
-  TickReport<Real> done{};
-  return finish(pose_to_joints(m->models, s.ramp, from_c(*options), from_c(*base_T_flange), q, &done), done, report);
+  return number(status);
 }
 
-std::int32_t C(joints_to_joints)(const C(model)* model, const C(state)* state, const C(tick_options)* options,
+std::int32_t C(multiply)(const C(pose)* a_T_b, const C(pose)* b_T_c, C(pose)* a_T_c) {
+  if (a_T_b == nullptr || b_T_c == nullptr || a_T_c == nullptr) return refused;
+  Pose<Real> product;
+  const Status status = multiply(from_c(*a_T_b), from_c(*b_T_c), product);
+  if (status == Status::ok) to_c(product, *a_T_c);
+  return number(status);
+}
+
+std::int32_t C(invert)(const C(pose)* a_T_b, C(pose)* b_T_a) {
+  if (a_T_b == nullptr || b_T_a == nullptr) return refused;
+  Pose<Real> inverse;
+  const Status status = invert(from_c(*a_T_b), inverse);
+  if (status == Status::ok) to_c(inverse, *b_T_a);
+  return number(status);
+}
+
+std::int32_t C(start_at_rest)(C(compensator)* compensator, std::size_t size, const C(calibrated_arm)* arm,
+                              std::int32_t model) {
+  const CalibratedArm<Real>* a = arm_in(arm);
+  if (a == nullptr || !aligned(compensator) || size != sizeof *compensator) return refused;
+  return number(start_at_rest(*a, static_cast<Model>(model),
+                              *static_cast<Compensator<Real>*>(static_cast<void*>(compensator))));
+}
+
+std::int32_t C(start_ramp)(C(compensator)* compensator, const C(calibrated_arm)* arm, std::int32_t model,
+                           std::uint32_t ticks) {
+  Compensator<Real>* c = compensator_in(compensator);
+  const CalibratedArm<Real>* a = arm_in(arm);
+  return c == nullptr || a == nullptr ? refused : number(start_ramp(*c, *a, static_cast<Model>(model), ticks));
+}
+
+std::int32_t C(start_frame_ramp)(C(compensator)* compensator, const C(pose)* base_T_user, const C(pose)* flange_T_tool,
+                                 std::uint32_t ticks) {
+  Compensator<Real>* c = compensator_in(compensator);
+  if (c == nullptr || base_T_user == nullptr || flange_T_tool == nullptr) return refused;
+  return number(start_frame_ramp(*c, {from_c(*base_T_user), from_c(*flange_T_tool)}, ticks));
+}
+
+std::int32_t C(advance_ramp)(C(compensator)* compensator) {
+  Compensator<Real>* c = compensator_in(compensator);
+  return c == nullptr ? refused : number(advance_ramp(*c));
+}
+
+std::uint32_t C(ramp_ticks_left)(const C(compensator)* compensator) {
+  const Compensator<Real>* c = compensator_in(compensator);
+  return c == nullptr ? 0U : ramp_ticks_left(*c);
+}
+
+std::int32_t C(default_tick_options)(const C(calibrated_arm)* arm, Real period_s, C(tick_options)* options) {
+  const CalibratedArm<Real>* a = arm_in(arm);
+  if (a == nullptr || options == nullptr || !(period_s > Real{0} && period_s <= Real(1e3))) return refused;
+  to_c(default_tick_options(*a, period_s), *options);
+  return number(Status::ok);
+}
+
+std::int32_t C(pose_to_joints)(const C(compensator)* compensator, const C(tick_options)* options,
+                               const C(pose)* user_T_tool, Real* q, C(tick_report)* report) {
+  const Compensator<Real>* c = compensator_in(compensator);
+  if (c == nullptr || options == nullptr || user_T_tool == nullptr || q == nullptr) return refused;
+  TickReport<Real> done{};
+  return finish(pose_to_joints(*c, from_c(*options), from_c(*user_T_tool), q, &done), done, report);
+}
+
+std::int32_t C(joints_to_joints)(const C(compensator)* compensator, const C(tick_options)* options,
                                  const Real* nominal_q, Real* q, C(tick_report)* report) {
-  const CModel* m = model_in(model);
-  CState s;
-  if (m == nullptr || !read_state(state, s) || options == nullptr || nominal_q == nullptr || q == nullptr) {
-    return refused;
-  }
+  const Compensator<Real>* c = compensator_in(compensator);
+  if (c == nullptr || options == nullptr || nominal_q == nullptr || q == nullptr) return refused;
   TickReport<Real> done{};
-  return finish(joints_to_joints(m->models, s.ramp, from_c(*options), nominal_q, q, &done), done, report);
+  return finish(joints_to_joints(*c, from_c(*options), nominal_q, q, &done), done, report);
 }
 
-std::int32_t C(pose_to_pose)(const C(model)* model, const C(state)* state, const C(tick_options)* options,
-                             const C(pose)* base_T_flange, Real* q, C(pose)* command, C(tick_report)* report) {
-  const CModel* m = model_in(model);
-  CState s;
-  if (m == nullptr || !read_state(state, s) || options == nullptr || base_T_flange == nullptr || q == nullptr ||
-      command == nullptr) {
-    return refused;
-  }
+std::int32_t C(pose_to_pose)(const C(compensator)* compensator, const C(tick_options)* options, const C(pose)* user_T_tool,
+                             Real* q, C(pose)* command, C(tick_report)* report) {
+  const Compensator<Real>* c = compensator_in(compensator);
+  if (c == nullptr || options == nullptr || user_T_tool == nullptr || q == nullptr || command == nullptr) return refused;
   TickReport<Real> done{};
   Pose<Real> pose;
-  const Status status = pose_to_pose(m->models, s.ramp, from_c(*options), from_c(*base_T_flange), q, pose, &done);
+  const Status status = pose_to_pose(*c, from_c(*options), from_c(*user_T_tool), q, pose, &done);
   if (status != Status::bad_input) to_c(pose, *command);
   return finish(status, done, report);
 }
 
-std::int32_t C(joint_velocities)(const C(model)* model, const Real* q, const Real* flange_velocity,
-                                 const Real* max_velocity, Real* velocity) {
-  const CModel* m = model_in(model);
-  if (m == nullptr || q == nullptr || flange_velocity == nullptr || max_velocity == nullptr || velocity == nullptr) {
-    return refused;
-  }
-  return number(joint_velocities(m->models.corrected, q, flange_velocity, max_velocity, velocity));
+std::int32_t C(joint_velocities)(const C(compensator)* compensator, const Real* q, const Real* tool_velocity,
+                                 Real period_s, const C(rate_limits)* limits, Real* velocity) {
+  const Compensator<Real>* c = compensator_in(compensator);
+  if (c == nullptr || q == nullptr || tool_velocity == nullptr || limits == nullptr || velocity == nullptr) return refused;
+  return number(joint_velocities(*c, q, tool_velocity, period_s, from_c(*limits), velocity));
 }
 
-std::int32_t C(find_solutions)(const C(model)* model, const C(goal_options)* goal, std::int32_t restarts,
+std::int32_t C(joint_accelerations)(const C(calibrated_arm)* arm, const Real* q, const Real* velocity,
+                                    const Real* flange_acceleration, const C(rate_limits)* limits, Real* acceleration) {
+  const CalibratedArm<Real>* a = arm_in(arm);
+  if (a == nullptr || q == nullptr || velocity == nullptr || flange_acceleration == nullptr || limits == nullptr ||
+      acceleration == nullptr) {
+    return refused;
+  }
+  return number(joint_accelerations(a->corrected, q, velocity, flange_acceleration, from_c(*limits), acceleration));
+}
+
+std::int32_t C(find_solutions)(const C(calibrated_arm)* arm, const C(goal_options)* goal, std::int32_t restarts,
                                const C(pose)* base_T_flange, const Real* posture, C(solutions)* solutions) {
-  const CModel* m = model_in(model);
-  if (m == nullptr || goal == nullptr || base_T_flange == nullptr || posture == nullptr || solutions == nullptr) {
+  const CalibratedArm<Real>* a = arm_in(arm);
+  if (a == nullptr || goal == nullptr || base_T_flange == nullptr || posture == nullptr || solutions == nullptr) {
     return refused;
   }
   const SolutionOptions<Real> how{from_c(*goal), restarts};
   Solutions<Real> found;
-  const Status status = find_solutions(m->models.corrected, how, from_c(*base_T_flange), posture, found);
+  const Status status = find_solutions(a->corrected, how, from_c(*base_T_flange), posture, found);
   if (status == Status::bad_input) return refused;
   solutions->count = found.count;
   for (std::int32_t k = 0; k < found.count; ++k) {
-    for (std::int32_t j = 0; j < m->models.corrected.joint_count; ++j) solutions->q[k][j] = found.q[k][j];
+    for (std::int32_t j = 0; j < a->corrected.joint_count; ++j) solutions->q[k][j] = found.q[k][j];
     solutions->distance[k] = found.distance[k];
   }
   return number(status);
 }
 
-std::int32_t C(cold_start)(const C(model)* model, const C(goal_options)* goal, std::int32_t restarts,
+std::int32_t C(cold_start)(const C(calibrated_arm)* arm, const C(goal_options)* goal, std::int32_t restarts,
                            const C(pose)* base_T_flange, Real* q) {
-  const CModel* m = model_in(model);
-  if (m == nullptr || goal == nullptr || base_T_flange == nullptr || q == nullptr) return refused;
+  const CalibratedArm<Real>* a = arm_in(arm);
+  if (a == nullptr || goal == nullptr || base_T_flange == nullptr || q == nullptr) return refused;
   const SolutionOptions<Real> how{from_c(*goal), restarts};
-  return number(cold_start(m->models.corrected, how, from_c(*base_T_flange), q));
+  return number(cold_start(a->corrected, how, from_c(*base_T_flange), q));
 }
 
 }  // extern "C"

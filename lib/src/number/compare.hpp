@@ -12,6 +12,12 @@ inline bool within(T low, T x, T high) {
   return __builtin_isgreaterequal(x, low) && __builtin_islessequal(x, high);
 }
 
+/// The nearest to x of low ... high.
+template <class T>
+inline T clamp(T low, T x, T high) {
+  return x < low ? low : (x > high ? high : x);
+}
+
 /// |x|; the sign bit is cleared, of a zero and of a NaN too.
 inline double magnitude(double x) { return __builtin_fabs(x); }
 inline float magnitude(float x) { return __builtin_fabsf(x); }

@@ -24,8 +24,8 @@ void measure_preparation() {
     S::status = make_arm(geometry, S::arm);
   };
   measure("make_arm", precision, "arms", count, another, [] { S::status = make_arm(geometry, S::arm); });
-  measure("make_compensator", precision, "arms", count, another,
-          [] { S::status = make_compensator(geometry, geometry, S::compensator); });
+  measure("make_calibrated_arm", precision, "arms", count, another,
+          [] { S::status = make_calibrated_arm(geometry, geometry, S::calibrated); });
   measure("default_tick_options", precision, "arms", count, another, [] { S::options = default_tick_options(S::arm); });
   measure("default_solution_options", precision, "arms", count, another,
           [] { solution_options = default_solution_options(S::arm); });

@@ -13,19 +13,20 @@ struct C;
 #define MDHCAL_NAMES(REAL, PREFIX)                                                                                      \
   template <>                                                                                                           \
   struct C<REAL> {                                                                                                      \
-    using Model = PREFIX##_model;                                                                                       \
-    using LoopState = PREFIX##_state;                                                                                   \
+    using Model = PREFIX##_calibrated_arm;                                                                              \
+    using LoopState = PREFIX##_compensator;                                                                             \
     using Pose = PREFIX##_pose;                                                                                         \
     using Options = PREFIX##_tick_options;                                                                                   \
     using Report = PREFIX##_tick_report;                                                                                     \
+    using RateLimits = PREFIX##_rate_limits;                                                                            \
     using Solutions = PREFIX##_solutions;                                                                               \
     static constexpr const char* prefix = #PREFIX;                                                                      \
     static constexpr auto load = PREFIX##_load;                                                                         \
     static constexpr auto joint_count = PREFIX##_joint_count;                                                           \
     static constexpr auto forward = PREFIX##_forward;                                                                   \
-    static constexpr auto start = PREFIX##_start;                                                                       \
+    static constexpr auto start_at_rest = PREFIX##_start_at_rest;                                                                       \
     static constexpr auto start_ramp = PREFIX##_start_ramp;                                                             \
-    static constexpr auto advance = PREFIX##_advance;                                                                   \
+    static constexpr auto advance_ramp = PREFIX##_advance_ramp;                                                                   \
     static constexpr auto default_tick_options = PREFIX##_default_tick_options;                                                   \
     static constexpr auto pose_to_joints = PREFIX##_pose_to_joints;                                                     \
     static constexpr auto joints_to_joints = PREFIX##_joints_to_joints;                                                 \
@@ -50,6 +51,9 @@ void measure_precision() {
   static typename N::Options options;
   static typename N::Report report;
   static typename N::Pose pose, command;
+  static typename N::RateLimits limits;
+  for (Real& limit : limits.max_velocity) limit = 3;
+  for (Real& limit : limits.max_acceleration) limit = 10;
   [[maybe_unused]] static typename N::Solutions solutions;
   static Real jacobian[MDHCAL_MAX_JOINTS][6];
   const auto row = [](const char* name, const char* set, int count, auto prepare, Call call) {
@@ -65,11 +69,12 @@ void measure_precision() {
   some_blob(20220822, true, blob);  // the arm of the other rows
   status = N::load(&model, sizeof model, MDHCAL_ABI_VERSION, blob, sizeof blob, nullptr);
   row("joint_count", "any", 1, as_it_is, [] { status = N::joint_count(&model); });
-  row("default_tick_options", "any", 1, as_it_is, [] { status = N::default_tick_options(&model, &options); });
-  row("start", "any", 1, as_it_is, [] { status = N::start(&loop, sizeof loop, &model, MDHCAL_CORRECTED); });
-  row("start_ramp", "any", 1, as_it_is, [] { status = N::start_ramp(&loop, MDHCAL_NOMINAL, Real{1}); });
-  row("advance", "any", input_count, as_it_is, [] { status = N::advance(&loop, static_cast<Real>(0.001)); });
-  status = N::start(&loop, sizeof loop, &model, MDHCAL_CORRECTED);
+  row("default_tick_options", "any", 1, as_it_is,
+      [] { status = N::default_tick_options(&model, static_cast<Real>(0.001), &options); });
+  row("start_at_rest", "any", 1, as_it_is, [] { status = N::start_at_rest(&loop, sizeof loop, &model, MDHCAL_CORRECTED); });
+  row("start_ramp", "any", 1, as_it_is, [] { status = N::start_ramp(&loop, &model, MDHCAL_NOMINAL, 1000000); });
+  row("advance_ramp", "any", input_count, as_it_is, [] { status = N::advance_ramp(&loop); });
+  status = N::start_at_rest(&loop, sizeof loop, &model, MDHCAL_CORRECTED);
 
   Random random(6);
   for (const Set set : {Set::regular, Set::near_singular}) {
@@ -89,16 +94,16 @@ void measure_precision() {
     row("forward", name_of(set), input_count, anywhere,
         [] { status = N::forward(&model, MDHCAL_CORRECTED, S::q, &pose, jacobian); });
     row("pose_to_joints", name_of(set), count, on_path,
-        [] { status = N::pose_to_joints(&model, &loop, &options, &pose, S::q, &report); });
+        [] { status = N::pose_to_joints(&loop, &options, &pose, S::q, &report); });
     row("joints_to_joints", name_of(set), count, on_path,
-        [] { status = N::joints_to_joints(&model, &loop, &options, S::meant_q, S::q, &report); });
+        [] { status = N::joints_to_joints(&loop, &options, S::meant_q, S::q, &report); });
     row("pose_to_pose", name_of(set), count, on_path,
-        [] { status = N::pose_to_pose(&model, &loop, &options, &pose, S::q, &command, &report); });
+        [] { status = N::pose_to_pose(&loop, &options, &pose, S::q, &command, &report); });
     row("joint_velocities", name_of(set), count, anywhere,
-        [] { status = N::joint_velocities(&model, S::q, S::velocity, S::max_velocity, S::joint_velocity); });
+        [] { status = N::joint_velocities(&loop, S::q, S::velocity, static_cast<Real>(0.001), &limits, S::joint_velocity); });
   }
   if constexpr (!in_software<Real>) {
-    status = N::default_tick_options(&model, &options);
+    status = N::default_tick_options(&model, static_cast<Real>(0.001), &options);
     const auto search = [&](int i) {
       double q_rad[6];
       joints(Set::mixed, i, random, q_rad);

@@ -12,17 +12,19 @@ void measure_ramp() {
   using S = State<Real>;
   const char* precision = precision_name<Real>;
   const auto half_way = [](int i) {
-    S::ramp = rest(S::compensator, i % 2 == 0);
-    S::status = start_ramp(S::ramp, i % 2 != 0, static_cast<Real>(i + 1) * static_cast<Real>(0.001));
+    S::status = start_at_rest(S::calibrated, i % 2 == 0 ? Model::corrected : Model::nominal, S::ramp);
+    S::status = start_ramp(S::ramp, S::calibrated, i % 2 != 0 ? Model::corrected : Model::nominal,
+                           static_cast<std::uint32_t>(i) + 2U);
+    S::status = advance_ramp(S::ramp);
   };
-  measure("rest", precision, "any", input_count, half_way, [] { S::ramp = rest(S::compensator, true); });
-  measure("start_ramp", precision, "any", input_count, half_way, [] { S::status = start_ramp(S::ramp, true, 1); });
-  measure("advance", precision, "any", input_count, half_way,
-          [] { S::status = advance(S::ramp, static_cast<Real>(0.001)); });
+  measure("start_at_rest", precision, "any", input_count, half_way,
+          [] { S::status = start_at_rest(S::calibrated, Model::corrected, S::ramp); });
+  measure("start_ramp", precision, "any", input_count, half_way,
+          [] { S::status = start_ramp(S::ramp, S::calibrated, Model::corrected, 1000); });
+  measure("advance_ramp", precision, "any", input_count, half_way, [] { S::status = advance_ramp(S::ramp); });
 }
 
-// The three forms on a path, at rest and in the middle of a ramp, where the arm between the models is made in every
-// tick; and the first tick after a swap without a ramp, which ends at the step limit.
+// The three forms on a path, at rest and in the middle of a ramp; and the first tick after a swap without a ramp, which ends at the step limit.
 template <class Real>
 void measure_forms() {
   using S = State<Real>;
@@ -30,18 +32,18 @@ void measure_forms() {
   const auto three = [](const char* set, int count, auto prepare) {
     const char* precision = precision_name<Real>;
     measure("pose_to_joints", precision, set, count, prepare,
-            [] { S::status = pose_to_joints(S::compensator, S::ramp, S::options, S::pose, S::q, &report); });
+            [] { S::status = pose_to_joints(S::ramp, S::options, S::pose, S::q, &report); });
     measure("joints_to_joints", precision, set, count, prepare,
-            [] { S::status = joints_to_joints(S::compensator, S::ramp, S::options, S::meant_q, S::q, &report); });
+            [] { S::status = joints_to_joints(S::ramp, S::options, S::meant_q, S::q, &report); });
     measure("pose_to_pose", precision, set, count, prepare,
-            [] { S::status = pose_to_pose(S::compensator, S::ramp, S::options, S::pose, S::q, S::command, &report); });
+            [] { S::status = pose_to_pose(S::ramp, S::options, S::pose, S::q, S::command, &report); });
   };
   Random random(4);
   for (const bool ramping : {false, true}) {
-    S::ramp = rest(S::compensator, !ramping);
+    S::status = start_at_rest(S::calibrated, ramping ? Model::nominal : Model::corrected, S::ramp);
     if (ramping) {
-      S::status = start_ramp(S::ramp, true, 1);
-      S::status = advance(S::ramp, static_cast<Real>(0.5));
+      S::status = start_ramp(S::ramp, S::calibrated, Model::corrected, 2);
+      S::status = advance_ramp(S::ramp);
     }
     for (Set set : {Set::regular, Set::near_singular}) {
       char name[32];
@@ -49,7 +51,7 @@ void measure_forms() {
       three(name, tick_count<Real>, [&](int i) { follow_path<Real>(set, i, random); });
     }
   }
-  S::ramp = rest(S::compensator, true);
+  S::status = start_at_rest(S::calibrated, Model::corrected, S::ramp);
   three("swap", input_count / 10, [&](int i) {
     follow_path<Real>(Set::mixed, i, random);
     for (int k = 0; k < 6; ++k) S::q[k] = S::meant_q[k];
@@ -61,7 +63,8 @@ void measure_velocities() {
   using S = State<Real>;
   for (int i = 0; i < 6; ++i) {
     S::velocity[i] = static_cast<Real>(i % 2 == 0 ? 0.1 : -0.2);
-    S::max_velocity[i] = 3;
+    S::rate_limits.max_velocity[i] = 3;
+    S::rate_limits.max_acceleration[i] = 10;
   }
   Random random(5);
   for (Set set : {Set::regular, Set::near_singular}) {
@@ -71,7 +74,7 @@ void measure_velocities() {
               joints(set, i, random, q_rad);
               S::set_joints(q_rad);
             },
-            [] { S::status = joint_velocities(S::arm, S::q, S::velocity, S::max_velocity, S::joint_velocity); });
+            [] { S::status = joint_velocities(S::arm, S::q, S::velocity, S::rate_limits, S::joint_velocity); });
   }
 }
 
@@ -101,8 +104,8 @@ void measure_solutions() {
 template <class Real>
 void measure_precision() {
   using S = State<Real>;
-  S::status = make_compensator(nominal_arm(), calibrated_arm(), S::compensator);
-  S::arm = S::compensator.corrected;
+  S::status = make_calibrated_arm(nominal_arm(), calibrated_arm(), S::calibrated);
+  S::arm = S::calibrated.corrected;
   measure_ramp<Real>();
   measure_forms<Real>();
   measure_velocities<Real>();

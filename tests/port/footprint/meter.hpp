@@ -55,9 +55,10 @@ struct State {
   static inline Real q[mdhcal::max_joints], meant_q[mdhcal::max_joints];
   static inline mdhcal::Pose<Real> pose, command;
   static inline mdhcal::TickOptions<Real> options;
-  static inline mdhcal::CompensatorModel<Real> compensator;
-  static inline mdhcal::CompensatorState<Real> ramp;
-  static inline Real velocity[6], max_velocity[mdhcal::max_joints], joint_velocity[mdhcal::max_joints];
+  static inline mdhcal::CalibratedArm<Real> calibrated;
+  static inline mdhcal::Compensator<Real> ramp;
+  static inline Real velocity[6], joint_velocity[mdhcal::max_joints];
+  static inline mdhcal::JointRateLimits<Real> rate_limits;
   static inline mdhcal::Status status;
 
   static void set_joints(const double (&q_rad)[6]) {
@@ -77,9 +78,9 @@ void follow_path(Set set, int i, Random& random) {
   joints(set, i, random, q_rad);
   S::set_joints(q_rad);
   for (int k = 0; k < 6; ++k) S::meant_q[k] = S::q[k];
-  S::status = forward(S::compensator.nominal, S::meant_q, S::pose);
+  S::status = forward(S::calibrated.nominal, S::meant_q, S::pose);
   S::options = default_tick_options(S::arm);
-  S::status = joints_to_joints(S::compensator, S::ramp, S::options, S::meant_q, S::q);
+  S::status = joints_to_joints(S::ramp, S::options, S::meant_q, S::q);
   for (int k = 0; k < 6; ++k) S::q[k] += static_cast<Real>(random.uniform(-0.003, 0.003));
   S::limit_steps();
 }

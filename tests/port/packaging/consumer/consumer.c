@@ -2,7 +2,7 @@
 /* A program of somebody else in C. */
 #include <mdhcal.h>
 
-static mdhcal_model model;
+static mdhcal_calibrated_arm model;
 
 int main(void) {
   const uint8_t bytes[4] = {0, 0, 0, 0};

@@ -1,0 +1,3 @@
+// SPDX-License-Identifier: MIT
+#define MDHCAL_REAL double
+#include "../../../../lib/src/arm/pose.cpp"
