@@ -17,10 +17,11 @@ inline constexpr double limit_approach_s = 0.1;
 
 /// Joint velocities [rad/s or m/s] at the readings q for a velocity of the flange in the base frame: of its origin [m/s],
 /// then the angular one [rad/s]. Continuous in q and in what is asked: damped least squares (Nakamura, Hanafusa 1986),
-/// a singular direction at a time (Maciejewski, Klein 1988). With singular value s and w asked of it (lengths over
-/// Arm::reach_m) a direction is answered by w s / (s^2 + k^2). Undamped, that changes by w s' / s^2; where this would be
-/// more than the joints' accelerations allow, and only there, k is other than 0. Then all velocities are made smaller alike
-/// until none is over max_velocity; then a joint near its limit is slowed down, and one at or beyond it only moves inwards.
+/// a direction with singular value s (lengths over Arm::reach_m) being answered by s / (s^2 + k^2), where k = 0 for
+/// s^2 >= speed^2 / acceleration, with the speed of all that is asked and the least of the joints' accelerations: nearer to
+/// a singularity than that, joints that follow it would have to be accelerated by more. k is a function of s alone, so that
+/// directions that change places change nothing. Then all velocities are made smaller alike until none is over
+/// max_velocity; then a joint near its limit is slowed down, and one at or beyond it only moves inwards.
 /// Redundant joints get the smallest velocities. Returns ok (the flange's velocity is met to 1e-9 relative, float 1e-4);
 /// joint_limited, near_singular (damped), step_limited (max_velocity), or out_of_reach (an arm with fewer joints than the
 /// velocity needs), all usable and short of it; bad_input (an arm that make_arm() did not make, a number that is not

@@ -12,10 +12,6 @@ namespace mdhcal {
 
 namespace {
 
-// s changes faster than the motion asked for where joints are fast; with 2 (4 squared) the change of a joint's velocity in
-// a millisecond on straight lines at 1 m/s past a wrist is in the median a tenth of what the acceleration allows.
-constexpr Real sharpness = Real(4);
-
 bool all_within(const Real* x, int count, Real low, Real high) {
   for (int k = 0; k < count; ++k) {
     if (!within(low, x[k], high)) return false;
@@ -23,9 +19,8 @@ bool all_within(const Real* x, int count, Real low, Real high) {
   return true;
 }
 
-// The square of the damping of a direction with singular value s, where motion^2 is w times the speed of the whole motion
-// over the acceleration allowed. s changes no faster than the arm moves, so that w s' / s^2 is within the acceleration for
-// s > motion; there k is 0. Below, s / (s^2 + k^2) with this k rises to the same height from 0 and has no corner.
+// The square of the damping of singular value s. The derivative of s / (s^2 + k^2) is at most of the order of 1 / motion^2
+// below s = motion and 1 / s^2 above it, where k is 0; there is no corner between.
 Real damping_square(Real s, Real motion_square) {
   if (!(s * s < motion_square)) return Real{0};
   const Real share = Real{1} - s * s / motion_square;
@@ -72,14 +67,15 @@ Status resolve(const Resolution& r, const Jacobian<Real>& jacobian, const Real* 
     const Real own = max_acceleration[j] / r.unit[j];
     if (own < least_acceleration) least_acceleration = own;
   }
-  const Real per_asked = square_root(dot6(moving, moving)) / least_acceleration;
+  // The Jacobian changes no faster than the arm moves: joints that follow within motion^2 = speed^2 / acceleration of a
+  // singularity would be accelerated by more than speed^2 / motion^2.
+  const Real motion_square = dot6(moving, moving) / least_acceleration;
   bool damped = false;
   for (std::int32_t j = 0; j < joints; ++j) x[j] = 0;
   for (std::int32_t k = 0; k < r.rank; ++k) {
     const Real s = r.basis.s[k];
     if (!(s > Real{0})) continue;  // what is lost is not answered, as s / (s^2 + k^2) says
-    const Real asked = magnitude(dot6(r.basis.us[k], moving)) / s;
-    const Real damping = damping_square(s, sharpness * asked * per_asked);
+    const Real damping = damping_square(s, motion_square);
     if (damping > Real{0}) damped = true;
     const Real along = dot6(r.basis.us[k], even) / (s * s + damping);
     for (std::int32_t j = 0; j < joints; ++j) x[j] += along * r.basis.v[k][j] * r.unit[j];
