@@ -42,4 +42,16 @@ double f_upper_tail(double f, double d1, double d2) {
   return incomplete_beta(d2 / (d2 + d1 * f), d2 / 2, d1 / 2);
 }
 
+double student_975(double freedom) {
+  // P(|T| > t) = I_x(freedom / 2, 1 / 2) with x = freedom / (freedom + t^2) (DLMF 8.17); it falls with t. At one degree of
+  // freedom t is 12.71.
+  double low = 1.9;
+  double high = 13.0;
+  for (int i = 0; i < 60; ++i) {
+    const double t = 0.5 * (low + high);
+    (incomplete_beta(freedom / (freedom + t * t), 0.5 * freedom, 0.5) > 0.05 ? low : high) = t;
+  }
+  return 0.5 * (low + high);
+}
+
 }  // namespace mdhcal::offline

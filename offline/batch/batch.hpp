@@ -37,7 +37,8 @@ struct BatchOutcome {
   std::string name;
   bool done = false;         ///< its folder is there and complete
   bool earlier = false;      ///< and was there before
-  std::string message;       ///< why it was refused; empty if done
+  bool usable = false;       ///< and holds a blob
+  std::string message;       ///< why it was refused or is not usable; empty if usable
 };
 
 /// Calibrates the entries into DIRECTORY/NAME, skipping those whose folder is there. A robot that is refused does not stop

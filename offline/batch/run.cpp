@@ -21,15 +21,21 @@ bool is_done(const fs::path& folder, bool with_report) {
   return fs::exists(folder / "result.json", error) && (!with_report || fs::exists(folder / "report.html", error));
 }
 
-void calibrate_one(const BatchEntry& entry, const fs::path& folder, const BatchOptions& options) {
+// Why the result is not used; empty if it is.
+std::string calibrate_one(const BatchEntry& entry, const fs::path& folder, const BatchOptions& options) {
   const Robot robot = read_robot(entry.robot);
   const Dataset data = read_dataset(entry.measurements, robot);
   Dataset test;
   if (!entry.test.empty()) test = read_dataset(entry.test, robot);
   OutputFolder out(folder, result_names);
-  const Calibration calibration = calibrate(robot, data, options.calibration, entry.test.empty() ? nullptr : &test);
+  const Calibration calibration = concluded(calibrate(robot, data, options.calibration, entry.test.empty() ? nullptr : &test));
   write_result(out, calibration, options.date, options.report);
   out.commit();
+  std::string reasons;
+  if (!calibration.released()) {
+    for (const std::string& reason : calibration.reasons) reasons += (reasons.empty() ? "" : " ") + reason;
+  }
+  return reasons;
 }
 
 }  // namespace
@@ -46,8 +52,10 @@ std::vector<BatchOutcome> run_batch(const std::vector<BatchEntry>& entries, cons
       const fs::path folder = fs::path(directory) / entries[i].name;
       try {
         outcome.earlier = !options.redo && is_done(folder, options.report);
-        if (!outcome.earlier) calibrate_one(entries[i], folder, options);
+        if (!outcome.earlier) outcome.message = calibrate_one(entries[i], folder, options);
+        else if (!fs::exists(folder / "calibration.blob")) outcome.message = "Not usable: see its result.json.";
         outcome.done = true;
+        outcome.usable = outcome.message.empty();
       } catch (const std::exception& error) {
         outcome.message = error.what();
       }

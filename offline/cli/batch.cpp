@@ -46,7 +46,7 @@ void print_json(const std::vector<BatchOutcome>& outcomes, const std::string& su
   nlohmann::ordered_json json{{"summary", summary}, {"robots", nlohmann::ordered_json::array()}};
   for (const BatchOutcome& outcome : outcomes) {
     json["robots"].push_back({{"name", outcome.name},
-                              {"state", !outcome.done ? "refused" : outcome.earlier ? "done before" : "calibrated"},
+                              {"state", !outcome.done ? "refused" : !outcome.usable ? "not usable" : outcome.earlier ? "done before" : "calibrated"},
                               {"message", outcome.message}});
   }
   std::fputs((json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + '\n').c_str(), stdout);
@@ -82,11 +82,12 @@ void run_batch(BatchArguments& arguments) {
   };
   if (arguments.json) print_json(outcomes, (directory / ("summary" + suffix + ".csv")).string());
   for (const BatchOutcome& outcome : outcomes) {
-    if (!outcome.done) warn(outcome.name + ": " + outcome.message);
+    if (!outcome.usable) warn(outcome.name + ": " + outcome.message);
   }
-  const bool all = std::all_of(outcomes.begin(), outcomes.end(), [](const BatchOutcome& o) { return o.done; });
-  const std::string said = count([](const BatchOutcome& o) { return o.done && !o.earlier; }) + " calibrated, " +
-                           count([](const BatchOutcome& o) { return o.earlier; }) + " were done before, " +
+  const bool all = std::all_of(outcomes.begin(), outcomes.end(), [](const BatchOutcome& o) { return o.usable; });
+  const std::string said = count([](const BatchOutcome& o) { return o.usable && !o.earlier; }) + " calibrated, " +
+                           count([](const BatchOutcome& o) { return o.usable && o.earlier; }) + " were done before, " +
+                           count([](const BatchOutcome& o) { return o.done && !o.usable; }) + " not usable, " +
                            count([](const BatchOutcome& o) { return !o.done; }) + " refused; summary" + suffix +
                            ".csv and .html are in " + directory_name + '.';
   if (!all) throw Refusal(said);

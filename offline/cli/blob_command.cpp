@@ -45,6 +45,13 @@ Pose<double> BlobArm::base_T_flange(const Pose<double>& world_T_target) const {
   return pose_of(compose(compose(inverted(world_T_base), frame_of(world_T_target)), inverted(flange_T_target)));
 }
 
+void warn_of_acceptance(const BlobFile& file) {
+  const std::string reason = accepted_reason(file.model.provenance);
+  if (reason.empty()) return;
+  warn("This blob comes from a result with reasons against it, accepted with the words \"" + reason +
+       "\": its result.json says which.");
+}
+
 BlobArm read_blob_arm(const std::string& path, const PoseOptions& options) {
   BlobArm blob{read_blob(path), {}, identity, identity};
   if (make_arm(blob.model.geometry, blob.arm) != Status::ok) {

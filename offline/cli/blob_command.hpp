@@ -9,6 +9,7 @@
 
 #include "mdhcal/blob.hpp"
 #include "mdhcal/kinematics.hpp"
+#include "offline/output/blob_file.hpp"
 
 namespace mdhcal::offline {
 
@@ -21,6 +22,9 @@ struct PoseOptions {
   /// Adds the two options to a command; `this` must outlive it.
   void add_to(CLI::App& command);
 };
+
+/// A warning if the blob was made with `calibrate --accept`: the reason that was given for it.
+void warn_of_acceptance(const BlobFile& file);
 
 /// A blob ready for use: its arm and the transforms that --frame and --target ask for.
 struct BlobArm {

@@ -3,6 +3,7 @@
 #include <memory>
 #include <optional>
 
+#include "offline/base/error.hpp"
 #include "offline/base/folder.hpp"
 #include "offline/base/progress.hpp"
 #include "offline/base/text_table.hpp"
@@ -43,12 +44,13 @@ void tell(const Calibration& c, const Assessment& assessment) {
   for (const std::string& each : c.details) detail(each);
   detail(choice_text(c));
   if (assessment.cross_validation) {
-    const CrossValidation& cv = *assessment.cross_validation;
+    const RepeatedCrossValidation& cv = *assessment.cross_validation;
     inform("Cross-validation in " + std::to_string(cv.folds) + " folds of whole groups: mean error " +
            fixed(cv.after.mean, 4) + " mm, maximum " + fixed(cv.after.max, 4) + " mm (nominal " +
            fixed(cv.before.mean, 4) + " and " + fixed(cv.before.max, 4) + " mm).");
   }
-  inform(figures_text(c) + c.verdict);
+  // The reasons against it are what the program ends with.
+  inform(figures_text(c) + (c.released() ? c.verdict : c.verdict.substr(c.verdict.find('\n') + 1)));
 }
 
 void run_calibrate(const CalibrateArguments& arguments) {
@@ -59,7 +61,7 @@ void run_calibrate(const CalibrateArguments& arguments) {
   Dataset test;
   if (!arguments.test.empty()) test = read_dataset(arguments.test, robot);
   OutputFolder folder(arguments.directory, result_names);
-  const Calibration c = calibrate(robot, data, options, arguments.test.empty() ? nullptr : &test);
+  const Calibration c = concluded(calibrate(robot, data, options, arguments.test.empty() ? nullptr : &test));
   const Assessment assessment = assess(arguments, options, robot, data, c);
   write_result(folder, c, date, true, assessment);
   folder.commit();
@@ -69,6 +71,11 @@ void run_calibrate(const CalibrateArguments& arguments) {
   for (const std::string& note : test.notes) inform(note);
   tell(c, assessment);
   inform("Written to " + arguments.directory + ".");
+  if (!c.released()) {
+    std::string said = "Not usable, so neither calibration.blob nor corrected.toml is written:";
+    for (const std::string& reason : c.reasons) said += " " + reason;
+    throw Refusal(said + " With --accept \"why\" it is written all the same.");
+  }
 }
 
 }  // namespace

@@ -25,11 +25,16 @@ void add_identification_options(CLI::App& command, CalibrationArguments& a) {
   command.add_option("--tool", a.tool, "fit, or given: the target is the robot file's tool point")
       ->check(CLI::IsMember({"fit", "given"}))
       ->capture_default_str();
-  command.add_option("--joints", a.joints, "read, or commanded: which joint columns to use")
-      ->check(CLI::IsMember({"read", "commanded"}))
+  command.add_option("--joints", a.joints, "Which joint columns to use, read or commanded; better: those read unless the commanded are clearly better")
+      ->check(CLI::IsMember({"better", "read", "commanded"}))
       ->capture_default_str();
   command.add_option("--noise", a.options.noise_mm, "Standard deviation of a measured coordinate [mm], default 0.02")
       ->check(CLI::PositiveNumber);
+  command.add_option("--max-residual", a.options.max_residual_mm,
+                     "Median position error that counts as explained [mm]; default 2 mm or 0.2 % of the reach")
+      ->check(CLI::PositiveNumber);
+  command.add_option("--accept", a.options.accept, "Use a result in spite of the reasons against it, and why: stands in result, report and blob");
+  command.add_flag("--rezero", a.options.rezero, "Move zeros that are degrees off into the nominal zeros of the robot that is written");
   command.add_option("--seed", a.options.seed, "Seed of folds and test groups")->capture_default_str();
   command.add_option("--fix", a.fix, "Parameters to keep nominal, such as a2,d5")->delimiter(',');
   command.add_option("--free", a.free, "Parameters to estimate in any case, such as beta4")->delimiter(',');
@@ -46,7 +51,7 @@ CalibrationOptions calibration_options(const CalibrationArguments& a) {
   CalibrationOptions options = a.options;
   options.fit_base = a.base == "fit";
   options.fit_tool = a.tool == "fit";
-  options.commanded_joints = a.joints == "commanded";
+  options.joints = a.joints == "commanded" ? JointReadings::commanded : a.joints == "read" ? JointReadings::read : JointReadings::better;
   if (a.test_fraction) {
     if (!a.test.empty()) throw InputError("--test and --test-fraction exclude each other; give one.");
     if (!(*a.test_fraction > 0.0 && *a.test_fraction < 1.0)) {

@@ -14,7 +14,7 @@ namespace mdhcal::offline {
 struct CalibrationArguments {
   std::string robot, measurements, directory;
   std::string test;
-  std::string base = "fit", tool = "fit", joints = "read";
+  std::string base = "fit", tool = "fit", joints = "better";
   std::optional<double> test_fraction;
   std::optional<std::string> date;
   double parallel_deg = 5.0, prior_length_mm = 1.0, prior_angle_mrad = 1.0;

@@ -119,6 +119,7 @@ Comparison compare_methods(const Robot& robot, const Dataset& data, const Calibr
   for (const char* method : methods) {
     CalibrationOptions one = options;
     one.method = method;
+    one.cross_validate = false;
     const auto start = std::chrono::steady_clock::now();
     Calibration c = calibrate(robot, data, one, test);
     Line line;

@@ -7,6 +7,7 @@
 #include "mdhcal/slot.hpp"
 #include "offline/base/error.hpp"
 #include "offline/base/folder.hpp"
+#include "offline/cli/blob_command.hpp"
 #include "offline/cli/commands.hpp"
 #include "offline/output/blob_file.hpp"
 #include "offline/output/export.hpp"
@@ -44,7 +45,9 @@ std::uint64_t address_of(const ExportArguments& arguments) {
 }
 
 std::vector<std::uint8_t> image_of(const ExportArguments& arguments) {
-  const Blob blob = read_blob_file(arguments.blob).bytes;
+  const BlobFile file = read_blob_file(arguments.blob);
+  warn_of_acceptance(file);
+  const Blob& blob = file.bytes;
   std::vector<std::uint8_t> image;
   if (arguments.slot) {
     std::uint32_t crc = 0;

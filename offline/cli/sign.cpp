@@ -3,6 +3,7 @@
 #include <optional>
 
 #include "offline/base/folder.hpp"
+#include "offline/cli/blob_command.hpp"
 #include "offline/cli/commands.hpp"
 #include "offline/output/blob_file.hpp"
 #include "offline/output/sign.hpp"
@@ -17,7 +18,9 @@ struct SignArguments {
 };
 
 void run_sign(const SignArguments& arguments) {
-  Blob blob = read_blob_file(arguments.blob).bytes;
+  const BlobFile file = read_blob_file(arguments.blob);
+  warn_of_acceptance(file);
+  Blob blob = file.bytes;
   sign(blob, key_of(read_key(arguments.key)), arguments.counter);
   write_file(arguments.output, {reinterpret_cast<const char*>(blob.data()), blob.size()});
 }

@@ -5,17 +5,23 @@
 #include <cmath>
 #include <numeric>
 
+#include "offline/base/distributions.hpp"
 #include "offline/base/error.hpp"
 #include "offline/base/random.hpp"
 #include "offline/base/sentences.hpp"
+#include "offline/identify/copies.hpp"
 #include "offline/identify/covariance.hpp"
 #include "offline/identify/dependence.hpp"
+#include "offline/identify/judging.hpp"
+#include "offline/identify/left_out.hpp"
 #include "offline/identify/mistakes.hpp"
 #include "offline/identify/notes.hpp"
 #include "offline/identify/published_methods.hpp"
 #include "offline/identify/regularized.hpp"
 #include "offline/identify/spectrum.hpp"
 #include "offline/identify/unknowns.hpp"
+#include "offline/identify/usable.hpp"
+#include "offline/identify/verdict.hpp"
 #include "offline/robot/vectors.hpp"
 
 namespace mdhcal::offline {
@@ -91,7 +97,7 @@ Robot corrected_robot(const Robot& robot, const Estimate& estimate, const Datase
   return out;
 }
 
-// A method of the source; the regularized ones are run by calibrate() itself.
+// A method of the source; the regularized ones are run by identify().
 MethodOutcome run_method(const std::string& method, const Dataset& data, const Selection& selection,
                          const Layout& layout, const Estimate& start, double noise_mm) {
   if (method == "lsm") return least_squares_step(data, selection, layout, start, noise_mm);
@@ -109,26 +115,6 @@ std::vector<LambdaReport::Point> points_of(const std::vector<LambdaPoint>& curve
   return out;
 }
 
-void note_commanded(const Robot& robot, const Dataset& data, const CalibrationOptions& options, double scale_mm,
-                    Calibration& out) {
-  if (data.commanded.empty()) return;
-  CalibrationOptions other = options;
-  other.commanded_joints = !options.commanded_joints;
-  Dataset copy = options.commanded_joints ? data : with_commanded(data);
-  copy.commanded.clear();
-  other.commanded_joints = false;
-  other.test_fraction = 0;
-  other.held_out_groups.clear();
-  const Calibration with = calibrate(robot, copy, other);
-  const bool better = with.scale_mm < scale_mm;
-  const char* used = options.commanded_joints ? "commanded" : "read";
-  const char* alternative = options.commanded_joints ? "read" : "commanded";
-  out.notes.push_back("The " + std::string(better ? alternative : used) + " joint angles fit better: residual scale " +
-                      number(scale_mm) + " mm an axis with the " + used + ", " + number(with.scale_mm) +
-                      " mm with the " + alternative + " ones" +
-                      (better ? std::string("; use them by --joints ") + alternative + "." : std::string(".")));
-}
-
 void note_dependences(Calibration& out) {
   if (!out.training.temperature.empty()) out.dependences.push_back(temperature_dependence(out));
   if (!out.training.direction.empty()) {
@@ -139,130 +125,165 @@ void note_dependences(Calibration& out) {
   out.notes.insert(out.notes.end(), sentences.begin(), sentences.end());
 }
 
-}  // namespace
-
-Calibration calibrate(const Robot& robot, const Dataset& given, const CalibrationOptions& options,
-                      const Dataset* test) {
-  Calibration out;
-  out.robot = robot;
-  out.method = options.method;
-  if (options.commanded_joints && given.commanded.empty()) {
-    throw InputError(given.path, 0, 0, "There are no commanded joint readings; expected columns q1_cmd, q2_cmd, ...");
+// What the other rules without a judge say on the same problem: for the record.
+void compare_rules(const Linearised& at, LambdaReport& report) {
+  const SpectralProblem& problem = at.problem;
+  if (problem.rank() == 0) return;
+  const auto add = [&](const std::string& rule, double lambda) {
+    report.choices.push_back({rule, lambda, std::sqrt(problem.residual_norm2(lambda)), std::sqrt(problem.solution_norm2(lambda))});
+  };
+  if (report.lambda > 0.0) add(report.rule + " (chosen)", report.lambda);
+  for (const LambdaChoice& choice : {marginal_likelihood(problem, at.independent_share), generalised_cross_validation(problem),
+                                     l_curve(problem), quasi_optimality(problem)}) {
+    if (choice.rule == report.rule) continue;
+    if (choice.found && choice.lambda > 0.0) add(choice.rule, choice.lambda);
+    else report.silent.push_back(choice.rule + ": " + (choice.note.empty() ? "no choice on this problem." : choice.note));
   }
-  out.training = options.commanded_joints ? with_commanded(given) : given;
-  const Dataset& data = out.training;
-  if (data.joint_count != static_cast<std::size_t>(robot.geometry.joint_count)) {
-    throw InputError(data.path, 0, 0, "Found measurements of " + std::to_string(data.joint_count) +
-                                          " joints; expected " + std::to_string(robot.geometry.joint_count) + ".");
+  for (const char* rule : {"rpim", "rpim-train", "cv", "discrepancy"}) {
+    if (rule != report.rule) report.silent.push_back(std::string(rule) + ": not run (it judges every row, or needs sigma); --lambda-rule runs it.");
   }
-  std::vector<std::size_t> testing;
-  split_off_test(data, options, out.training_rows, testing);
-  if (test != nullptr) {
-    out.testing = aligned(options.commanded_joints ? with_commanded(*test) : *test, data);
+}
+
+// A test file's rows under the name of the target that stays.
+Dataset renamed(Dataset data, const std::vector<std::pair<std::string, std::string>>& twins) {
+  for (const auto& [twin, target] : twins) {
+    const auto from = std::find(data.targets.begin(), data.targets.end(), twin);
+    const auto to = std::find(data.targets.begin(), data.targets.end(), target);
+    if (from == data.targets.end()) continue;
+    if (to == data.targets.end()) {
+      *from = target;
+      continue;
+    }
+    for (Measurement& m : data.rows) {
+      if (m.target == static_cast<std::uint32_t>(from - data.targets.begin())) m.target = static_cast<std::uint32_t>(to - data.targets.begin());
+    }
   }
+  return data;
+}
 
-  UnknownsOptions unknowns_options;
-  unknowns_options.fit_base = options.fit_base;
-  unknowns_options.fit_tool = options.fit_tool;
-  unknowns_options.parameters = options.parameters;
-  unknowns_options.noise_mm = options.noise_mm.value_or(0.02);
-  const double noise_mm = unknowns_options.noise_mm;
-  out.noise_mm = noise_mm;
-  const Unknowns unknowns = choose_unknowns(robot, data, out.training_rows, unknowns_options);
-  out.layout = unknowns.layout;
-  out.decisions = unknowns.parameters.decisions;
-  check_poses(robot, data, out.training_rows, unknowns);
+// The point of a target that was measured under two names, under its other name too.
+void add_twin(const std::string& twin, const std::string& target, Robot& robot) {
+  const auto of = std::find_if(robot.targets.begin(), robot.targets.end(), [&](const TargetPoint& p) { return p.name == target; });
+  const Vector3 point = of != robot.targets.end() ? of->flange_p_m : robot.tool_p_m.value_or(Vector3{});
+  const auto is = std::find_if(robot.targets.begin(), robot.targets.end(), [&](const TargetPoint& p) { return p.name == twin; });
+  if (is != robot.targets.end()) is->flange_p_m = point;
+  else robot.targets.push_back({twin, point});
+}
 
+// What the stages of a calibration hand on.
+struct Work {
+  const Robot& robot;
+  const CalibrationOptions& options;
+  std::vector<std::size_t> testing;  // rows of Calibration::testing
+  Unknowns unknowns;
   Selection selection;
-  selection.rows = out.training_rows;
-  const Fit nominal = fit_frames(unknowns, data, selection, noise_mm);
+  RegularizedFit regularized;
+  bool penalised = false;
+};
+
+UnknownsOptions unknowns_options(const CalibrationOptions& options) {
+  UnknownsOptions out;
+  out.fit_base = options.fit_base;
+  out.fit_tool = options.fit_tool;
+  out.parameters = options.parameters;
+  out.noise_mm = options.noise_mm.value_or(0.02);
+  return out;
+}
+
+// Which rows identify and which judge.
+void split(const Dataset& data, const Dataset* test, Work& work, Calibration& out) {
+  out.training = data;
+  if (data.joint_count != static_cast<std::size_t>(work.robot.geometry.joint_count)) {
+    throw InputError(data.path, 0, 0, "Found measurements of " + std::to_string(data.joint_count) + " joints; expected " +
+                                          std::to_string(work.robot.geometry.joint_count) + ".");
+  }
+  split_off_test(data, work.options, out.training_rows, work.testing);
+  if (test != nullptr) {
+    out.testing = aligned(*test, data);
+    std::vector<std::size_t> none;
+    work.testing.clear();
+    split_off_test(out.testing, {}, work.testing, none);
+  } else if (!work.testing.empty()) {
+    out.testing = data;
+  }
+}
+
+// The nominal fit of base and targets, then the method.
+void identify(Work& work, Calibration& out) {
+  const Dataset& data = out.training;
+  const UnknownsOptions unknowns_asked = unknowns_options(work.options);
+  out.noise_mm = unknowns_asked.noise_mm;
+  work.unknowns = choose_unknowns(work.robot, data, out.training_rows, unknowns_asked);
+  out.layout = work.unknowns.layout;
+  out.decisions = work.unknowns.parameters.decisions;
+  check_poses(work.robot, data, out.training_rows, work.unknowns);
+
+  work.selection.rows = out.training_rows;
+  const Fit nominal = fit_frames(work.unknowns, data, work.selection, out.noise_mm);
   out.start = nominal.estimate;
   const bool any_sigma = states_sigma(data);
-  if (any_sigma) out.residual_unit_mm = mean_sigma_mm(data, out.training_rows, noise_mm);
-  check_simple_mistakes(robot, data, out.training_rows, unknowns_options, nominal.scale * out.residual_unit_mm);
+  if (any_sigma) out.residual_unit_mm = mean_sigma_mm(data, out.training_rows, out.noise_mm);
+  check_simple_mistakes(work.robot, data, out.training_rows, unknowns_asked, nominal.scale * out.residual_unit_mm);
 
-  RegularizedFit regularized;
-  const bool penalised = options.method == "rpim" || options.method == "rpim-train";
-  if (penalised) {
+  RegularizedFit& result = work.regularized;
+  work.penalised = work.options.method == "rpim" || work.options.method == "rpim-train";
+  if (work.penalised) {
     RegularizedControl control;
-    control.rule = rule_of(options);
-    control.lambda = options.lambda.value_or(0.0);
-    control.noise_mm = noise_mm;
-    control.robust = options.robust;
-    control.seed = options.seed;
+    control.rule = rule_of(work.options);
+    control.lambda = work.options.lambda.value_or(0.0);
+    control.noise_mm = out.noise_mm;
+    control.robust = work.options.robust;
+    control.seed = work.options.seed;
     if (any_sigma) control.sigma = 1.0;
-    else if (options.noise_mm) control.sigma = noise_mm;
-    regularized = regularized_fit(data, selection, unknowns.layout, out.start, control);
-    out.converged = regularized.fit.converged;
-    out.iterations = regularized.fit.iterations;
-    out.lambda.rule = regularized.choice.rule;
-    out.lambda.lambda = regularized.choice.lambda;
-    out.lambda.note = regularized.choice.note;
-    out.lambda.curve = points_of(regularized.choice.curve);
-    out.lambda.l_curve = points_of(regularized.corner.curve);
-    if (regularized.corner.found) out.lambda.corner = regularized.corner.lambda;
-    if (!out.lambda.note.empty()) out.notes.push_back(out.lambda.note);
+    else if (work.options.noise_mm) control.sigma = out.noise_mm;
+    result = regularized_fit(data, work.selection, out.layout, out.start, control);
+    out.converged = result.fit.converged;
+    out.iterations = result.fit.iterations;
+    out.lambda.rule = result.choice.rule;
+    out.lambda.lambda = result.choice.lambda;
+    out.lambda.note = result.choice.note;
+    out.lambda.curve = points_of(result.choice.curve);
+    out.lambda.l_curve = points_of(result.corner.curve);
+    if (result.corner.found) out.lambda.corner = result.corner.lambda;
+    if (!result.choice.note.empty()) out.notes.push_back(result.choice.note);
     if (!out.converged) out.notes.push_back("The fit did not settle within its iteration bound.");
   } else {
-    Selection plain = selection;
-    plain.robust_weight.clear();
-    const MethodOutcome outcome =
-        run_method(options.method, data, plain, unknowns.layout, out.start, noise_mm);
+    work.selection.robust_weight.clear();
+    const MethodOutcome outcome = run_method(work.options.method, data, work.selection, out.layout, out.start, out.noise_mm);
     out.converged = outcome.converged;
     out.iterations = outcome.iterations;
     if (!outcome.note.empty()) out.notes.push_back(outcome.note);
     out.lambda.rule = "none";
-    selection = plain;
-    regularized.fit.estimate = outcome.estimate;
-    evaluate(MeasurementModel(outcome.estimate), data, selection, noise_mm, &regularized.fit.error_norms);
-    regularized.fit.scale = robust_scale(regularized.fit.error_norms, 1.0, any_sigma ? 1.0 : noise_mm);
+    result.fit.estimate = outcome.estimate;
+    evaluate(MeasurementModel(outcome.estimate), data, work.selection, out.noise_mm, &result.fit.error_norms);
+    result.fit.scale = robust_scale(result.fit.error_norms, 1.0, any_sigma ? 1.0 : out.noise_mm);
+    result.linearised = linearised(data, work.selection, out.layout, outcome.estimate, out.noise_mm);
   }
-  out.estimate = regularized.fit.estimate;
-  out.robust_weight = selection.robust_weight;
-  const double scale = regularized.fit.scale;
-  out.scale_mm = scale * out.residual_unit_mm;
+  out.estimate = result.fit.estimate;
+  out.robust_weight = work.selection.robust_weight;
+  out.scale_mm = result.fit.scale * out.residual_unit_mm;
   out.outlier_threshold_mm = outlier_error_norm(out.scale_mm);
+  out.corrected = corrected_robot(work.robot, out.estimate, data);
+}
 
-  std::size_t rejected = 0;
-  for (double e : regularized.fit.error_norms) rejected += e > outlier_threshold * scale ? 1 : 0;
-  if (penalised && options.robust) {
-    if (const auto move = find_tracker_move(data, out.training_rows, unknowns, regularized.fit, noise_mm)) {
-      throw Refusal("The tracker, or the robot's foot, seems to have moved before row " +
-                    row_name(data, data.rows[move->first_row_after]) + " (line " +
-                    std::to_string(data.rows[move->first_row_after].line) + "): the rows from there on lie in a frame " +
-                    number(move->shift_mm) + " mm and " + number(move->turn_deg) +
-                    " degrees away. Calibrate from one series, or bring both into one tracker frame first.");
-    }
-    if (3 * rejected > out.training_rows.size()) {
-      throw Refusal(std::to_string(rejected) + " of " + std::to_string(out.training_rows.size()) +
-                    " rows lie beyond the outlier threshold of " + number(out.outlier_threshold_mm) +
-                    " mm, more than a third: the measurements do not agree with one geometry. Check that the tracker "
-                    "stood still, that robot file and joint order are right, and that the noise stated is not too "
-                    "small.");
-    }
-  }
-
-  // Everything that is said about the result comes from one more linearisation, at the result.
+// Rank, covariance and the parameters' intervals, from the linearisation at the result.
+void tell_parameters(const Work& work, Calibration& out) {
+  const Dataset& data = out.training;
+  const Linearised& at = work.regularized.linearised;
   const MeasurementModel model(out.estimate);
-  Triangle whole = sum_of(linearise(model, data, selection, unknowns.layout, noise_mm));
-  const ReducedSystem system = reduce_frames(whole.matrix(), unknowns.layout.frame_columns(), whole.row_count());
-  const std::vector<double> x = deviation(out.estimate, unknowns.layout);
-  const SpectralProblem problem =
-      penalised_problem(system, Eigen::Map<const Eigen::VectorXd>(x.data(), static_cast<Eigen::Index>(x.size())));
-  Triangle nominal_whole = sum_of(linearise(MeasurementModel(out.start), data, selection, unknowns.layout, noise_mm));
-  out.identifiability = identifiability(system, problem, unknowns.layout, model, out.lambda.lambda, options.seed);
-  out.identifiability.before = spectrum_of(
-      reduce_frames(nominal_whole.matrix(), unknowns.layout.frame_columns(), nominal_whole.row_count()));
-  out.covariance = covariance_of(data, selection, unknowns.layout, system, problem, regularized.fit, out.lambda.lambda,
-                                 independent_share(data, selection, model), noise_mm);
-  const std::size_t frames = unknowns.layout.frame_columns();
-  for (std::size_t i = 0; i < unknowns.layout.geometry.size(); ++i) {
-    const Parameter& parameter = unknowns.layout.geometry[i];
+  out.identifiability = identifiability(at.system, at.problem, out.layout, model, out.lambda.lambda, work.options.seed);
+  out.identifiability.before =
+      spectrum_of(linearised(data, work.selection, out.layout, out.start, out.noise_mm).system);
+  out.covariance = covariance_of(data, work.selection, out.layout, at.system, at.problem, work.regularized.fit,
+                                 out.lambda.lambda, at.independent_share, out.noise_mm);
+  const std::size_t frames = out.layout.frame_columns();
+  for (std::size_t i = 0; i < out.layout.geometry.size(); ++i) {
+    const Parameter& parameter = out.layout.geometry[i];
     EstimatedParameter p;
     p.id = parameter.id;
     p.nominal = parameter.nominal;
     p.prior = parameter.prior;
-    p.deviation = x[i] * parameter.prior;
+    p.deviation = at.x0(static_cast<Eigen::Index>(i)) * parameter.prior;
     p.standard_deviation = std::sqrt(std::max(0.0, out.covariance.at(frames + i, frames + i))) * parameter.prior;
     p.low = p.deviation - out.covariance.coverage_factor * p.standard_deviation;
     p.high = p.deviation + out.covariance.coverage_factor * p.standard_deviation;
@@ -270,25 +291,137 @@ Calibration calibrate(const Robot& robot, const Dataset& given, const Calibratio
     p.resolution = out.identifiability.resolution[i];
     out.parameters.push_back(p);
   }
+  out.accuracy = predicted_accuracy(model, out.layout, out.covariance);
+  if (out.lambda.rule != "none") compare_rules(at, out.lambda);
+}
 
-  out.corrected = corrected_robot(robot, out.estimate, data);
-  const RowJudge judge{out.start, out.estimate, noise_mm, any_sigma, scale};
-  out.train = judge_rows(judge, data, out.training_rows, false, out.rows);
-  if (test != nullptr) {
-    std::vector<std::size_t> all;
-    std::vector<std::size_t> none;
-    split_off_test(out.testing, {}, all, none);
-    out.test = judge_rows(judge, out.testing, all, true, out.rows);
-  } else if (!testing.empty()) {
-    out.testing = data;
-    out.test = judge_rows(judge, data, testing, true, out.rows);
+// The figures on the training rows, on those left out of folds, and on those held out.
+void judge(const Work& work, Calibration& out) {
+  const Dataset& data = out.training;
+  out.train = judge_training(work.regularized.fit, out);
+  if (work.penalised && work.options.cross_validate && work.selection.folds > 1) {
+    LeaveOutControl control;
+    control.robust = work.options.robust;
+    control.choose_lambda = rule_of(work.options) == LambdaRule::marginal_likelihood;
+    control.noise_mm = out.noise_mm;
+    out.cross_validation = judge_left_out(leave_out(data, work.selection, work.unknowns, work.regularized.linearised,
+                                                    work.regularized.fit, out.start, control), out);
+  }
+  if (!work.testing.empty()) {
+    const Predictor predictor{MeasurementModel(out.estimate), out.layout, out.covariance, work.regularized.fit.scale, out.noise_mm,
+                              states_sigma(data)};
+    out.test = judge_held_out(predictor, work.testing, out);
+  }
+}
+
+// Reasons, notes and the verdict.
+void explain(const Work& work, Calibration& out) {
+  const Dataset& data = out.training;
+  find_reasons(work.options, out);
+  if (work.penalised && work.options.robust) {
+    if (const auto move = find_tracker_move(data, out.training_rows, work.unknowns, work.regularized.fit, out.noise_mm)) {
+      out.reasons.push_back("The tracker, or the robot's foot, seems to have moved before row " +
+                            row_name(data, data.rows[move->first_row_after]) + " (line " +
+                            std::to_string(data.rows[move->first_row_after].line) + "): the rows from there on lie in a frame " +
+                            number(move->shift_mm) + " mm and " + number(move->turn_deg) +
+                            " degrees away. Calibrate from one series, or bring both into one tracker frame first.");
+    }
+    if (3 * out.train.outliers.size() > out.training_rows.size()) {
+      out.reasons.push_back(std::to_string(out.train.outliers.size()) + " of " + std::to_string(out.training_rows.size()) +
+                            " rows lie beyond the outlier threshold of " + number(out.outlier_threshold_mm) +
+                            " mm, more than a third: the measurements do not agree with one geometry. Check that the tracker "
+                            "stood still, that robot file and joint order are right, and that the noise stated is not too "
+                            "small.");
+    }
   }
   note_dependences(out);
   add_standing_notes(data, out);
   const std::vector<std::string> on_axis = targets_on_last_axis(out.estimate, data);
   out.notes.insert(out.notes.end(), on_axis.begin(), on_axis.end());
-  note_commanded(robot, given, options, out.scale_mm, out);
+  out.accepted = out.usable() ? std::string() : work.options.accept;
   out.verdict = verdict_of(out);
+}
+
+Calibration calibrate_once(const Robot& robot, const Dataset& data, const CalibrationOptions& options, const Dataset* test) {
+  Calibration out;
+  out.robot = robot;
+  out.method = options.method;
+  Work work{robot, options, {}, {}, {}, {}, false};
+  split(data, test, work, out);
+  identify(work, out);
+  tell_parameters(work, out);
+  judge(work, out);
+  explain(work, out);
+  return out;
+}
+
+// --rezero: a zero that is degrees off goes into the nominal geometry, and what is left is identified from there.
+Calibration calibrate_rezeroed(const Robot& given, const Dataset& data, const CalibrationOptions& options, const Dataset* test) {
+  Robot robot = given;
+  std::vector<ZeroOffset> moved;
+  constexpr int rounds = 3;  // the prior holds the first estimate back, by little
+  for (int round = 0;; ++round) {
+    Calibration out = calibrate_once(robot, data, options, test);
+    const std::vector<ZeroOffset> zeros = options.rezero && round < rounds ? large_zero_offsets(out) : std::vector<ZeroOffset>{};
+    if (zeros.empty()) {
+      out.zeros = std::move(moved);
+      std::vector<std::string> words;
+      for (const ZeroOffset& zero : out.zeros) words.push_back(sentence_of(robot, zero));
+      if (!words.empty()) {
+        words.front()[0] = 'J';
+        out.notes.insert(out.notes.begin(), joined(words) + ": moved into the nominal zero (--rezero); the deviations count from there.");
+      }
+      return out;
+    }
+    for (const ZeroOffset& zero : zeros) {
+      const bool revolute = robot.geometry.joint[zero.link].kind == JointKind::revolute;
+      Link& is = robot.geometry.link[zero.link];
+      Link& was = robot.nominal[static_cast<std::size_t>(zero.link)];
+      // Both by the same, so that what the file stated as a correction stays one.
+      (revolute ? is.theta_rad : is.d_m) = (revolute ? was.theta_rad : was.d_m) += zero.offset;
+      const auto known = std::find_if(moved.begin(), moved.end(), [&](const ZeroOffset& z) { return z.link == zero.link; });
+      if (known == moved.end()) moved.push_back(zero);
+      else known->offset += zero.offset;
+    }
+  }
+}
+
+// The readings that fit better, where that is beyond chance: an F test of the residuals' variances.
+Calibration with_better_joints(const Robot& robot, const Dataset& data, const CalibrationOptions& options, const Dataset* test) {
+  const bool forced = options.joints != JointReadings::better;
+  const Dataset commanded_test = test != nullptr ? with_commanded(*test) : Dataset{};
+  Calibration read = calibrate_rezeroed(robot, data, options, test);
+  Calibration commanded = calibrate_rezeroed(robot, with_commanded(data), options, test != nullptr ? &commanded_test : nullptr);
+  const double ratio = std::pow(read.covariance.sigma / commanded.covariance.sigma, 2);
+  constexpr double level = 0.01;
+  const bool clear = f_upper_tail(ratio, read.covariance.freedom, commanded.covariance.freedom) < level;
+  const bool take_commanded = forced ? options.joints == JointReadings::commanded : clear;
+  const bool better = commanded.scale_mm < read.scale_mm;
+  Calibration& out = take_commanded ? commanded : read;
+  out.notes.push_back(std::string("The ") + (better ? "commanded" : "read") + " joint angles fit better: residual scale " +
+                      number(read.scale_mm) + " mm an axis with the read, " + number(commanded.scale_mm) +
+                      " mm with the commanded ones. The " + (take_commanded ? "commanded" : "read") + " ones are used" +
+                      (forced ? ", as --joints says." : clear == better ? "." : ", since chance may make as much (--joints decides otherwise)."));
+  return std::move(out);
+}
+
+}  // namespace
+
+Calibration calibrate(const Robot& robot, const Dataset& given, const CalibrationOptions& options, const Dataset* test) {
+  if (options.joints == JointReadings::commanded && given.commanded.empty()) {
+    throw InputError(given.path, 0, 0, "There are no commanded joint readings; expected columns q1_cmd, q2_cmd, ...");
+  }
+  const CountedOnce once = count_once(given);
+  CountedOnce test_once;
+  if (test != nullptr) {
+    test_once = count_once(renamed(*test, once.twins));
+    test = &test_once.data;
+  }
+  Calibration out = given.commanded.empty() ? calibrate_rezeroed(robot, once.data, options, test)
+                                            : with_better_joints(robot, once.data, options, test);
+  if (!once.note.empty()) out.notes.insert(out.notes.begin(), once.note);
+  if (!test_once.note.empty()) out.notes.insert(out.notes.begin(), "Of the test rows: " + test_once.note);
+  for (const auto& [twin, target] : once.twins) add_twin(twin, target, out.corrected);
   return out;
 }
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "offline/base/distributions.hpp"
 #include "offline/identify/factorization.hpp"
 #include "offline/identify/lambda_rules.hpp"
 
@@ -56,15 +57,6 @@ Noise noise_of(const Dataset& data, const Selection& selection, const Fit& fit, 
   return out;
 }
 
-double student_975(double freedom) {
-  // Expansion about the normal quantile (Fisher and Cornish 1960); exact to 1 % from 3 degrees of freedom.
-  const double z = 1.959963984540054;
-  const double z3 = z * z * z;
-  const double z5 = z3 * z * z;
-  const double f = std::max(3.0, freedom);
-  return z + (z3 + z) / (4.0 * f) + (5.0 * z5 + 16.0 * z3 + 3.0 * z) / (96.0 * f * f);
-}
-
 }  // namespace
 
 Covariance covariance_of(const Dataset& data, const Selection& selection, const Layout& layout,
@@ -79,10 +71,14 @@ Covariance covariance_of(const Dataset& data, const Selection& selection, const 
   const Noise noise = noise_of(data, selection, fit, used, independent_share, floor);
   out.sigma = std::sqrt(noise.variance * independent_share);
   out.freedom = noise.freedom;
-  out.coverage_factor = student_975(noise.freedom);
+  out.coverage_factor = student_975(std::max(3.0, noise.freedom));
   const double ratio = marginal_likelihood(problem, independent_share).lambda;
   if (problem.rank() > 0 && ratio > 0.0) {
-    out.prior_scale = std::sqrt(std::max(1.0, noise.variance * independent_share / ratio));
+    // Two estimates of the prior's variance: the noise over the ratio with the greatest likelihood, and the deviations
+    // found, since a deviation's expected square is that variance times its filter factor. They agree where the data tell
+    // the ratio; where hardly anything is left of the residual the first one has no bound.
+    const double found = problem.solution_norm2(lambda) / std::max(1.0, problem.effective_parameters(lambda));
+    out.prior_scale = std::sqrt(std::max(1.0, std::min(noise.variance * independent_share / ratio, found)));
   }
 
   const double t2 = out.prior_scale * out.prior_scale;

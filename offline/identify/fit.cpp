@@ -42,13 +42,6 @@ double penalty(const Estimate& estimate, const Layout& layout, double lambda) {
 
 }  // namespace
 
-Triangle sum_of(const std::vector<Triangle>& parts) {
-  if (parts.size() == 1) return parts.front();
-  Triangle whole(parts.front().unknowns());
-  for (const Triangle& part : parts) whole.add(part);
-  return whole;
-}
-
 Fit fit(const Dataset& data, Selection& selection, const Layout& layout, const Estimate& start,
         const FitControl& control) {
   Fit out;

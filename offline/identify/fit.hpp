@@ -4,9 +4,8 @@
 
 #include <vector>
 
-#include "offline/identify/reduction.hpp"
+#include "offline/identify/linearised.hpp"
 #include "offline/identify/robust.hpp"
-#include "offline/identify/tikhonov.hpp"
 
 namespace mdhcal::offline {
 
@@ -34,8 +33,5 @@ struct Fit {
 /// whole deviation x, not on the step.
 Fit fit(const Dataset& data, Selection& selection, const Layout& layout, const Estimate& start,
         const FitControl& control);
-
-/// The triangle of all folds together.
-Triangle sum_of(const std::vector<Triangle>& parts);
 
 }  // namespace mdhcal::offline

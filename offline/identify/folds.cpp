@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "offline/identify/folds.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <numeric>
-#include <utility>
 
 #include "offline/base/error.hpp"
 #include "offline/base/random.hpp"
@@ -16,20 +16,6 @@ namespace {
 
 constexpr std::uint32_t fold_count = 10;
 constexpr std::size_t leave_one_out_below = 20;
-
-Eigen::VectorXd deviation_vector(const Estimate& estimate, const Layout& layout) {
-  const std::vector<double> x = deviation(estimate, layout);
-  return Eigen::Map<const Eigen::VectorXd>(x.data(), static_cast<Eigen::Index>(x.size()));
-}
-
-Estimate solved(const MeasurementModel& model, const Layout& layout, const ReducedSystem& system,
-                const SpectralProblem& problem, const Eigen::VectorXd& x0, double lambda) {
-  const auto frames = static_cast<Eigen::Index>(layout.frame_columns());
-  Eigen::VectorXd step(frames + x0.size());
-  step.tail(x0.size()) = problem.solution(lambda) - x0;
-  step.head(frames) = frame_step(system, step.tail(x0.size()));
-  return moved(model.estimate(), layout, step.data());
-}
 
 // Adds the position errors of the good rows of one fold (of all rows if `fold` is negative).
 void add_errors(const Estimate& estimate, const Dataset& data, const Selection& selection, std::int64_t fold,
@@ -47,14 +33,35 @@ void add_errors(const Estimate& estimate, const Dataset& data, const Selection& 
 
 }  // namespace
 
-Folds make_folds(const Dataset& data, const std::vector<std::size_t>& rows, std::uint64_t seed) {
-  constexpr std::uint32_t none = 0xFFFFFFFF;
-  std::vector<std::uint32_t> rank_of_group(data.groups.size(), none);
-  std::uint32_t groups = 0;
-  for (std::size_t row : rows) {
-    std::uint32_t& rank = rank_of_group[data.rows[row].group];
-    if (rank == none) rank = groups++;
+std::vector<std::uint32_t> poses_of(const Dataset& data, const std::vector<std::size_t>& rows) {
+  // Groups that share readings are joined: each points at one joined before it, or at itself.
+  std::vector<std::uint32_t> joined(data.groups.size());
+  std::iota(joined.begin(), joined.end(), 0U);
+  const auto root = [&](std::uint32_t group) {
+    while (joined[group] != group) group = joined[group] = joined[joined[group]];
+    return group;
+  };
+  std::map<Joints, std::uint32_t> first_with;
+  for (const std::size_t row : rows) {
+    const auto [found, added] = first_with.emplace(data.rows[row].q, data.rows[row].group);
+    if (!added) joined[root(data.rows[row].group)] = root(found->second);
   }
+  constexpr std::uint32_t none = 0xFFFFFFFF;
+  std::vector<std::uint32_t> number(data.groups.size(), none);
+  std::vector<std::uint32_t> out;
+  out.reserve(rows.size());
+  std::uint32_t poses = 0;
+  for (const std::size_t row : rows) {
+    std::uint32_t& each = number[root(data.rows[row].group)];
+    if (each == none) each = poses++;
+    out.push_back(each);
+  }
+  return out;
+}
+
+Folds make_folds(const Dataset& data, const std::vector<std::size_t>& rows, std::uint64_t seed) {
+  const std::vector<std::uint32_t> pose = poses_of(data, rows);
+  const std::uint32_t groups = pose.empty() ? 0 : *std::max_element(pose.begin(), pose.end()) + 1;
   Folds folds;
   folds.count = groups < leave_one_out_below ? groups : fold_count;
   if (folds.count == 0) folds.count = 1;
@@ -63,32 +70,22 @@ Folds make_folds(const Dataset& data, const std::vector<std::size_t>& rows, std:
   Random random(seed);
   for (std::size_t i = groups; i > 1; --i) std::swap(order[i - 1], order[random.index(i)]);
   folds.of_row.reserve(rows.size());
-  for (std::size_t row : rows) folds.of_row.push_back(order[rank_of_group[data.rows[row].group]] % folds.count);
+  for (const std::uint32_t each : pose) folds.of_row.push_back(order[each] % folds.count);
   return folds;
 }
 
-FoldJudge::FoldJudge(const Dataset& data, const Selection& selection, const Layout& layout, const MeasurementModel& model,
-                     const std::vector<Triangle>& parts)
-    : data_(data), selection_(selection), layout_(layout), model_(model),
-      x0_(deviation_vector(model.estimate(), layout)) {
-  for (std::size_t left_out = 0; left_out < parts.size(); ++left_out) {
-    Triangle rest(layout.columns());
-    for (std::size_t p = 0; p < parts.size(); ++p) {
-      if (p != left_out || parts.size() == 1) rest.add(parts[p]);
-    }
-    Part part;
-    part.system = reduce_frames(rest.matrix(), layout.frame_columns(), rest.row_count());
-    part.problem = penalised_problem(part.system, x0_);
-    part_.push_back(std::move(part));
-  }
+FoldJudge::FoldJudge(const Dataset& data, const Selection& selection, const Layout& layout, const Estimate& at,
+                     const Linearised& whole)
+    : data_(data), selection_(selection), layout_(layout), at_(at), whole_(whole) {
+  for (std::size_t fold = 0; fold < whole.parts.size(); ++fold) rest_.push_back(without_fold(whole, layout, fold));
 }
 
 double FoldJudge::error_mm(double lambda) const {
   double sum = 0.0;
   std::size_t count = 0;
-  for (std::size_t fold = 0; fold < part_.size(); ++fold) {
+  for (std::size_t fold = 0; fold < rest_.size(); ++fold) {
     try {
-      add_errors(solved(model_, layout_, part_[fold].system, part_[fold].problem, x0_, lambda), data_, selection_,
+      add_errors(solved(at_, layout_, rest_[fold].system, rest_[fold].problem, whole_.x0, lambda), data_, selection_,
                  static_cast<std::int64_t>(fold), sum, count);
     } catch (const Refusal&) {
       return HUGE_VAL;
@@ -103,14 +100,15 @@ double independent_share(const Dataset& data, const Selection& selection, const 
     double sum[3] = {0, 0, 0};
     double squares = 0;
   };
-  std::map<std::pair<std::uint32_t, std::uint32_t>, Cell> cells;
+  const std::vector<std::uint32_t> pose = poses_of(data, selection.rows);
+  std::map<std::uint32_t, Cell> cells;
   for (std::size_t i = 0; i < selection.rows.size(); ++i) {
     const Measurement& m = data.rows[selection.rows[i]];
     if (m.kind == MeasurementKind::distance) continue;
     if (!selection.robust_weight.empty() && selection.robust_weight[i] < outlier_weight) continue;
     double r[max_row_residuals];
     model.residual(data, selection.rows[i], r);
-    Cell& cell = cells[{m.group, m.target}];
+    Cell& cell = cells[pose[i]];
     ++cell.count;
     for (std::size_t k = 0; k < 3; ++k) {
       cell.sum[k] += r[k];
@@ -142,13 +140,12 @@ double independent_share(const Dataset& data, const Selection& selection, const 
   return (rows - repeats + repeats / effect) / rows;
 }
 
-double training_error_mm(const Dataset& data, const Selection& selection, const Layout& layout, const MeasurementModel& model,
-                         const ReducedSystem& system, const SpectralProblem& problem, double lambda) {
+double training_error_mm(const Dataset& data, const Selection& selection, const Layout& layout, const Estimate& at,
+                         const Linearised& whole, double lambda) {
   double sum = 0.0;
   std::size_t count = 0;
   try {
-    const Eigen::VectorXd x0 = deviation_vector(model.estimate(), layout);
-    add_errors(solved(model, layout, system, problem, x0, lambda), data, selection, -1, sum, count);
+    add_errors(solved(at, layout, whole.system, whole.problem, whole.x0, lambda), data, selection, -1, sum, count);
   } catch (const Refusal&) {
     return HUGE_VAL;
   }

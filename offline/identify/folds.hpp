@@ -1,54 +1,53 @@
 // SPDX-License-Identifier: MIT
-// Cross-validation inside the training set, by group: repeats of one configuration never part.
+// Cross-validation inside the training set, by pose: repeats of one configuration and its reflectors never part.
 #pragma once
 
 #include <cstdint>
 #include <vector>
 
-#include "offline/identify/reduction.hpp"
-#include "offline/identify/tikhonov.hpp"
+#include "offline/identify/linearised.hpp"
 
 namespace mdhcal::offline {
+
+/// Which pose each row belongs to, numbered from 0 in the order of `rows`: rows of one group are one pose, and so are rows
+/// with the same joint readings, bit by bit.
+std::vector<std::uint32_t> poses_of(const Dataset& data, const std::vector<std::size_t>& rows);
 
 struct Folds {
   std::vector<std::uint32_t> of_row;  ///< one a row given
   std::uint32_t count = 1;
 };
 
-/// Ten folds of whole groups, drawn by `seed`; one fold a group (leave-one-out) below 20 groups.
+/// Ten folds of whole poses, drawn by `seed`; one fold a pose (leave-one-out) below 20 poses.
 Folds make_folds(const Dataset& data, const std::vector<std::size_t>& rows, std::uint64_t seed);
 
 /// Judges a lambda by what was left out: for each fold, the others' triangles are solved with that lambda and the
 /// full, not linearised, corrected model predicts the fold's rows.
 class FoldJudge {
  public:
-  /// `parts` are the folds' triangles at `model` with `selection`'s weights.
-  FoldJudge(const Dataset& data, const Selection& selection, const Layout& layout, const MeasurementModel& model,
-            const std::vector<Triangle>& parts);
+  /// `whole` is linearised at `at` with `selection`'s folds and weights. All must outlive the judge.
+  FoldJudge(const Dataset& data, const Selection& selection, const Layout& layout, const Estimate& at,
+            const Linearised& whole);
 
   /// Mean position error [mm] over the rows left out, gross errors (no robust weight) excepted.
   double error_mm(double lambda) const;
 
  private:
-  struct Part {
-    ReducedSystem system;
-    SpectralProblem problem;
-  };
   const Dataset& data_;
   const Selection& selection_;
   const Layout& layout_;
-  const MeasurementModel& model_;
-  Eigen::VectorXd x0_;
-  std::vector<Part> part_;
+  const Estimate& at_;
+  const Linearised& whole_;
+  std::vector<WithoutFold> rest_;
 };
 
-/// How much of the rows counts as independent, in (0, 1]: repeats of one configuration (rows of one group and target)
-/// share the errors that the model does not hold, so n repeats inform like n / (1 + (n - 1) r), r being the correlation
-/// of their residuals. 1 without repeats. (the design effect, Kish 1965)
+/// How much of the rows counts as independent, in (0, 1]: the rows of one pose, its reflectors and repeats, share the
+/// errors that the model does not hold, so n of them inform like n / (1 + (n - 1) r), r being the correlation of their
+/// residuals. 1 where every pose has one row. (the design effect, Kish 1965)
 double independent_share(const Dataset& data, const Selection& selection, const MeasurementModel& model);
 
-/// The same with the training rows themselves as the judge, as in the source.
-double training_error_mm(const Dataset& data, const Selection& selection, const Layout& layout, const MeasurementModel& model,
-                         const ReducedSystem& system, const SpectralProblem& problem, double lambda);
+/// The error with the training rows themselves as the judge, as in the source.
+double training_error_mm(const Dataset& data, const Selection& selection, const Layout& layout, const Estimate& at,
+                         const Linearised& whole, double lambda);
 
 }  // namespace mdhcal::offline

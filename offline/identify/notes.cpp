@@ -6,9 +6,7 @@
 #include <cstring>
 
 #include "offline/base/sentences.hpp"
-#include "offline/identify/reduction.hpp"
-#include "offline/identify/robust.hpp"
-#include "offline/robot/vectors.hpp"
+#include "offline/identify/verdict.hpp"
 
 namespace mdhcal::offline {
 
@@ -52,55 +50,7 @@ std::string note_of(const std::vector<WeakDirection>& weak) {
   return out + (weak.size() > 1 ? " All of them: --verbose, or weak_directions in result.json." : "");
 }
 
-Vector3 leading(const double* residual, std::size_t count) {
-  if (count == 1) return {residual[0], 0.0, 0.0};
-  return {residual[0], residual[1], residual[2]};
-}
-
 }  // namespace
-
-double outlier_error_norm(double scale) {
-  return outlier_threshold * scale * chi_median(3);
-}
-
-SplitFigures judge_rows(const RowJudge& judge, const Dataset& data, const std::vector<std::size_t>& rows, bool test,
-                        std::vector<RowResult>& results) {
-  SplitFigures out;
-  const MeasurementModel before(judge.before);
-  const MeasurementModel after(judge.after);
-  std::vector<double> errors_before;
-  std::vector<double> errors_after;
-  std::vector<double> good_before;
-  std::vector<double> good;
-  for (std::size_t row : rows) {
-    double residual[max_row_residuals];
-    double scale[max_row_residuals];
-    RowResult result;
-    result.row = row;
-    result.test = test;
-    std::size_t count = before.residual(data, row, residual);
-    result.before_mm = leading(residual, count);
-    count = after.residual(data, row, residual);
-    result.after_mm = leading(residual, count);
-    residual_scale(data, row, judge.noise_mm, judge.any_sigma, scale);
-    for (std::size_t k = 0; k < count; ++k) residual[k] *= scale[k];
-    result.outlier = standard_error_norm(residual, count) > outlier_threshold * judge.scale;
-    errors_before.push_back(norm(result.before_mm));
-    errors_after.push_back(norm(result.after_mm));
-    if (result.outlier) {
-      out.outliers.push_back(row_name(data, data.rows[row]));
-    } else {
-      good_before.push_back(errors_before.back());
-      good.push_back(errors_after.back());
-    }
-    results.push_back(result);
-  }
-  out.before = statistics(errors_before);
-  out.after = statistics(errors_after);
-  out.before_good = statistics(good_before);
-  out.after_good = statistics(good);
-  return out;
-}
 
 void add_standing_notes(const Dataset& data, Calibration& c) {
   std::size_t scalars = 0;
@@ -114,11 +64,14 @@ void add_standing_notes(const Dataset& data, Calibration& c) {
     c.notes.push_back("The robot file states a geometry that was corrected before: deviations and their penalty count "
                       "from its geometry, and \"nominal\" in the figures means it. The maker's nominal links are kept.");
   }
-  if (c.identifiability.frame_rank < c.identifiability.frame_unknowns) {
-    c.notes.push_back("Base frame and targets have " + std::to_string(c.identifiability.frame_unknowns) +
-                      " unknowns, of which these poses tell " + std::to_string(c.identifiability.frame_rank) +
-                      ": the rest keeps its starting value, and positions away from the measured ones are not to be "
-                      "trusted. Measure with more orientations.");
+  const bool only_lengths = std::all_of(c.training_rows.begin(), c.training_rows.end(), [&](std::size_t row) {
+    return data.rows[row].kind == MeasurementKind::distance;
+  });
+  if (only_lengths && c.identifiability.frame_rank < c.identifiability.frame_unknowns) {
+    c.notes.push_back("Lengths tell " + std::to_string(c.identifiability.frame_rank) + " of the " +
+                      std::to_string(c.identifiability.frame_unknowns) +
+                      " unknowns of base frame and targets: the rest keeps its starting value. Positions in the tracker's frame are "
+                      "not to be read off this result; lengths and the robot's own frame are.");
   }
   std::vector<std::string> lost;
   std::vector<std::string> far;
@@ -137,31 +90,11 @@ void add_standing_notes(const Dataset& data, Calibration& c) {
                       " by more than 15 prior standard deviations from nominal: either the prior is too narrow for "
                       "this robot, or these parameters are told so badly that they must not be read one by one.");
   }
-  if (!c.train.outliers.empty()) c.notes.push_back("Outliers among the training rows: " + joined(c.train.outliers) + ".");
-  if (c.test && !c.test->outliers.empty()) {
-    c.notes.push_back("Test rows beyond the training outlier threshold: " + joined(c.test->outliers) + ".");
-  }
+  const std::vector<std::string> findings = findings_of(c);
+  c.notes.insert(c.notes.end(), findings.begin(), findings.end());
   c.notes.push_back(
       "Compliance, backlash and thermal drift are in no parameter: they stay in the residual, and the intervals cover "
       "the geometry only.");
-}
-
-std::string verdict_of(const Calibration& c) {
-  if (!c.converged) return "Not converged: do not use this result.";
-  if (!c.test) {
-    return "Untested: no rows were held out; on the training rows the mean error is " + number(c.train.after_good.mean) +
-           " mm (nominal " + number(c.train.before_good.mean) + " mm)" +
-           (c.train.outliers.empty() ? "." : " without " + std::to_string(c.train.outliers.size()) + " outliers.");
-  }
-  // Both without the outliers: a gross error is no fault of the nominal geometry either.
-  const Statistics& after = c.test->after_good;
-  const Statistics& before = c.test->before_good;
-  if (!(c.test->after.median < c.test->before.median)) {
-    return "Worse than nominal on the held-out rows: do not use this result.";
-  }
-  return "Tested on " + std::to_string(c.test->after.count) + " held-out rows: mean error " + number(after.mean) +
-         " mm, maximum " + number(after.max) + " mm without " + std::to_string(c.test->outliers.size()) +
-         " outliers; nominal " + number(before.mean) + " mm, maximum " + number(before.max) + " mm on the same rows.";
 }
 
 }  // namespace mdhcal::offline

@@ -8,18 +8,10 @@
 namespace mdhcal::offline {
 
 LambdaChoice choose_lambda(const Dataset& data, const Selection& selection, const Layout& layout, const Estimate& at,
-                           const RegularizedControl& control, LambdaChoice& corner) {
-  const MeasurementModel model(at);
-  const std::vector<Triangle> parts = linearise(model, data, selection, layout, control.noise_mm);
-  Triangle whole = sum_of(parts);
-  const ReducedSystem system = reduce_frames(whole.matrix(), layout.frame_columns(), whole.row_count());
-  const std::vector<double> x = deviation(at, layout);
-  const Eigen::VectorXd x0 = Eigen::Map<const Eigen::VectorXd>(x.data(), static_cast<Eigen::Index>(x.size()));
-  const SpectralProblem problem = penalised_problem(system, x0);
-  corner = l_curve(problem);
-
+                           const Linearised& whole, const RegularizedControl& control) {
+  const SpectralProblem& problem = whole.problem;
   const auto by_folds = [&] {
-    const FoldJudge judge(data, selection, layout, model, parts);
+    const FoldJudge judge(data, selection, layout, at, whole);
     const Judge error = [&](double lambda) { return judge.error_mm(lambda); };
     return control.rule == LambdaRule::cv ? cross_validation(problem, error) : two_stage_sweep(problem, error, "rpim");
   };
@@ -28,14 +20,10 @@ LambdaChoice choose_lambda(const Dataset& data, const Selection& selection, cons
     case LambdaRule::cv: return by_folds();
     case LambdaRule::rpim_train:
       return two_stage_sweep(
-          problem,
-          [&](double lambda) {
-            return training_error_mm(data, selection, layout, model, system, problem, lambda);
-          },
-          "rpim-train");
-    case LambdaRule::l_curve: return corner;
+          problem, [&](double lambda) { return training_error_mm(data, selection, layout, at, whole, lambda); }, "rpim-train");
+    case LambdaRule::l_curve: return l_curve(problem);
     case LambdaRule::gcv: return generalised_cross_validation(problem);
-    case LambdaRule::marginal_likelihood: return marginal_likelihood(problem, independent_share(data, selection, model));
+    case LambdaRule::marginal_likelihood: return marginal_likelihood(problem, whole.independent_share);
     case LambdaRule::quasi_optimality: return quasi_optimality(problem);
     case LambdaRule::discrepancy: {
       if (!control.sigma) {
@@ -54,12 +42,52 @@ LambdaChoice choose_lambda(const Dataset& data, const Selection& selection, cons
     case LambdaRule::fixed: break;
   }
   LambdaChoice choice;
+  choice = l_curve(problem);
   choice.rule = "fixed";
+  choice.note.clear();
   choice.lambda = control.lambda;
   choice.found = true;
-  choice.curve = corner.curve;
   return choice;
 }
+
+std::string why_not(const LambdaChoice& choice, const SpectralProblem& problem) {
+  if (!choice.found) return choice.note.empty() ? "it has no answer here" : choice.note.substr(0, choice.note.size() - 1);
+  // A minimum at the edge of the range is where the search ended, not where the criterion turns: within one step of the
+  // grid of lambda_rules.cpp, some twentieth.
+  if (choice.lambda < 1.06 * problem.smallest_lambda()) return "it runs to the lower bound of the search, where the weakest direction is not held";
+  if (choice.lambda > problem.largest_lambda() / 1.06) return "it runs to the upper bound of the search, where nothing is estimated";
+  // Nearer (in the logarithm of the residual) to the nominal arm than to what the measurements tell. Within a factor of two
+  // of each other the two cannot be told apart by it.
+  const double fitted = problem.residual_norm2(0.0);
+  const double nominal = fitted + problem.beta.squaredNorm();
+  const double here = problem.residual_norm2(choice.lambda);
+  if (nominal > 4.0 * fitted && here * here > nominal * fitted) return "it leaves the arm near its nominal geometry, against the measurements";
+  return "";
+}
+
+namespace {
+
+// The rule's choice, or the default rule's where that is not to be followed, or else the residual's scale squared.
+LambdaChoice followed(const Dataset& data, const Selection& selection, const Layout& layout, const RegularizedFit& now,
+                      const RegularizedControl& control) {
+  const SpectralProblem& problem = now.linearised.problem;
+  LambdaChoice choice = choose_lambda(data, selection, layout, now.fit.estimate, now.linearised, control);
+  const bool without_judge = control.rule == LambdaRule::gcv || control.rule == LambdaRule::l_curve ||
+                             control.rule == LambdaRule::quasi_optimality;
+  const std::string reason = without_judge ? why_not(choice, problem) : "";
+  if (!reason.empty() && problem.rank() > 0) {
+    const std::string rule = choice.rule;
+    choice = marginal_likelihood(problem, now.linearised.independent_share);
+    choice.note = "The rule " + rule + " is not followed: " + reason + ". Lambda is that of the default rule, reml.";
+  }
+  if (!choice.found) {
+    choice.lambda = now.fit.lambda;
+    choice.note += (choice.note.empty() ? "" : " ") + std::string("Lambda is the residual's scale squared.");
+  }
+  return choice;
+}
+
+}  // namespace
 
 RegularizedFit regularized_fit(const Dataset& data, Selection& selection, const Layout& layout, const Estimate& start,
                                const RegularizedControl& control) {
@@ -81,19 +109,16 @@ RegularizedFit regularized_fit(const Dataset& data, Selection& selection, const 
   constexpr int rounds = 4;
   for (int round = 0; round < rounds; ++round) {
     const double before = stage.lambda;
-    out.choice = choose_lambda(data, selection, layout, out.fit.estimate, control, out.corner);
-    if (!out.choice.found) {
-      LambdaChoice fallback = out.choice;
-      fallback.lambda = out.fit.lambda;
-      fallback.note += (fallback.note.empty() ? "" : " ") + std::string("Lambda is the residual's scale squared.");
-      out.choice = fallback;
-    }
+    out.linearised = linearised(data, selection, layout, out.fit.estimate, control.noise_mm);
+    out.corner = l_curve(out.linearised.problem);
+    out.choice = followed(data, selection, layout, out, control);
     stage.lambda = out.choice.lambda;
     out.fit = fit(data, selection, layout, out.fit.estimate, stage);
     // A change of lambda by a tenth moves no result by more than a small part of its uncertainty.
     if (control.rule == LambdaRule::fixed) break;
     if (before > 0.0 && std::fabs(std::log(stage.lambda / before)) < 0.1) break;
   }
+  out.linearised = linearised(data, selection, layout, out.fit.estimate, control.noise_mm);
   return out;
 }
 

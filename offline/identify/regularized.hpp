@@ -35,12 +35,17 @@ struct RegularizedFit {
   Fit fit;                 ///< converged at `choice.lambda`
   LambdaChoice choice;
   LambdaChoice corner;     ///< the L-curve of the same problem, for the record
+  Linearised linearised;   ///< at the result
 };
 
-/// What the rule of `control` says on the problem linearised at `at`; `selection` has folds and weights. `corner` receives
-/// the L-curve. Throws InputError if the rule is discrepancy and there is no sigma.
+/// What the rule of `control` says on the problem linearised at `at`; `selection` has folds and weights. Throws InputError
+/// if the rule is discrepancy and there is no sigma.
 LambdaChoice choose_lambda(const Dataset& data, const Selection& selection, const Layout& layout, const Estimate& at,
-                           const RegularizedControl& control, LambdaChoice& corner);
+                           const Linearised& whole, const RegularizedControl& control);
+
+/// Why a choice is not to be followed, a clause: it lies at a bound of the search, or leaves the deviations near nominal
+/// although the measurements tell them. Empty if neither.
+std::string why_not(const LambdaChoice& choice, const SpectralProblem& problem);
 
 /// Robust starting fit with lambda following the residual's scale (Huber, then Tukey), then the rule on the problem
 /// linearised there, then the fit with that lambda; again until lambda stays. `selection` returns with the weights.

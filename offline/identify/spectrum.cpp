@@ -19,7 +19,7 @@ constexpr double weak_share = 1e-2;
 // A parameter is identifiable if no more than this part of it lies in lost directions.
 constexpr double lost_share = 1e-6;
 
-std::vector<double> random_readings(const Geometry& geometry, Random& random) {
+std::vector<double> readings_within_a_turn(const Geometry& geometry, Random& random) {
   std::vector<double> q(max_joints, 0.0);
   for (std::int32_t i = 0; i < geometry.joint_count; ++i) {
     const Joint& joint = geometry.joint[i];
@@ -57,7 +57,7 @@ std::string advice(const Layout& layout, const MeasurementModel& model, const Ei
   double typical = 0.0;
   std::vector<double> best_q;
   for (int i = 0; i < trials; ++i) {
-    const std::vector<double> q = random_readings(model.estimate().geometry, random);
+    const std::vector<double> q = readings_within_a_turn(model.estimate().geometry, random);
     std::copy(q.begin(), q.end(), trial.rows[0].q.begin());
     double residual[3];
     model.residual(trial, 0, layout, residual, jacobian.data(), layout.columns());

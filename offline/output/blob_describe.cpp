@@ -80,6 +80,9 @@ Json provenance_json(const BlobProvenance& from) {
            {"method", optional_text(from.method)},
            {"lambda", from.has_lambda == 1 ? Json(from.lambda) : Json()},
            {"lambda_rule", optional_text(from.lambda_rule)}};
+  const std::string accepted = accepted_reason(from);
+  if (!accepted.empty()) out["lambda_rule"] = nullptr;
+  out["accepted"] = accepted.empty() ? Json() : Json(accepted);
   out["measurements_sha256"] = nullptr;
   out["pose_count"] = nullptr;
   out["held_out"] = nullptr;

@@ -82,18 +82,21 @@ std::string origin_text(const Json& blob) {
   if (!from["lambda"].is_null()) {
     text += "lambda          " + short_number(from["lambda"].get<double>()) + ", rule " + word(from["lambda_rule"], "not stated") + '\n';
   }
+  if (!from["accepted"].is_null()) {
+    text += "accepted        against the reasons of result.json: " + from["accepted"].get<std::string>() + '\n';
+  }
   if (from["pose_count"].is_null()) {
     text += "measurements    none: not identified by this program\n";
   } else {
     text += "measurements    " + std::to_string(from["pose_count"].get<unsigned>()) + " poses, SHA-256 " +
             from["measurements_sha256"].get<std::string>() + '\n';
   }
-  if (from["held_out"].is_null()) return text + "held out        none: untested\n";
+  if (from["held_out"].is_null()) return text + "judged on       nothing\n";
   const Json& held_out = from["held_out"];
   const auto change = [&](const char* key) {
     return fixed(held_out["before"][key].get<double>(), 4) + " -> " + fixed(held_out["after"][key].get<double>(), 4) + " mm";
   };
-  return text + "held out        " + std::to_string(held_out["pose_count"].get<unsigned>()) + " poses, mean " +
+  return text + "judged on       " + std::to_string(held_out["pose_count"].get<unsigned>()) + " poses, mean " +
          change("mean_mm") + ", max " + change("max_mm") + '\n';
 }
 

@@ -25,6 +25,11 @@ BlobFile read_blob_file(const std::string& path) {
 
 mdhcal::BlobContent read_blob(const std::string& path) { return read_blob_file(path).model; }
 
+std::string accepted_reason(const BlobProvenance& provenance) {
+  const std::string text = provenance.lambda_rule;
+  return text.starts_with(accepted_mark) ? text.substr(accepted_mark.size()) : std::string();
+}
+
 Robot robot_of(const mdhcal::BlobContent& model, const std::string& path) {
   Robot robot;
   robot.path = path;

@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <cstdio>
 
+#include "offline/base/error.hpp"
 #include "offline/base/sentences.hpp"
+#include "offline/output/blob_file.hpp"
 
 namespace mdhcal::offline {
 
@@ -17,6 +19,16 @@ std::string line_of(const char* label, const Statistics& s) {
   return text;
 }
 
+// As much of a text as `size` bytes hold, cut between characters of UTF-8, line breaks and the like as blanks.
+std::string fitting(std::string text, std::size_t size) {
+  for (char& c : text) {
+    if (static_cast<unsigned char>(c) < 0x20 || c == 0x7F) c = ' ';
+  }
+  if (text.size() <= size) return text;
+  while (size > 0 && (static_cast<unsigned char>(text[size]) & 0xC0U) == 0x80U) --size;
+  return text.substr(0, size);
+}
+
 }  // namespace
 
 Provenance provenance_of(const Calibration& c, const std::string& date) {
@@ -27,13 +39,15 @@ Provenance provenance_of(const Calibration& c, const std::string& date) {
   out.measurements_sha256 = c.training.digest_sha256;
   out.pose_count = static_cast<std::uint32_t>(std::min<std::size_t>(c.training_rows.size(), 0xFFFFFFFFU));
   if (c.lambda.rule != "none") out.lambda = c.lambda.lambda;
-  if (c.test && c.test->after.count > 0) {
+  if (!c.usable()) out.lambda_rule = fitting(std::string(accepted_mark) + c.accepted, sizeof BlobProvenance{}.lambda_rule - 1);
+  const SplitFigures& judged = c.judged();
+  if ((c.test || c.cross_validation) && judged.after.count > 0) {
     Provenance::HeldOut held;
-    held.pose_count = static_cast<std::uint32_t>(std::min<std::size_t>(c.test->after.count, 0xFFFFFFFFU));
-    held.mean_before_m = 1e-3 * c.test->before.mean;
-    held.max_before_m = 1e-3 * c.test->before.max;
-    held.mean_after_m = 1e-3 * c.test->after.mean;
-    held.max_after_m = 1e-3 * c.test->after.max;
+    held.pose_count = static_cast<std::uint32_t>(std::min<std::size_t>(judged.after.count, 0xFFFFFFFFU));
+    held.mean_before_m = 1e-3 * judged.before.mean;
+    held.max_before_m = 1e-3 * judged.before.max;
+    held.mean_after_m = 1e-3 * judged.after.mean;
+    held.max_after_m = 1e-3 * judged.after.max;
     out.held_out = held;
   }
   return out;
@@ -43,6 +57,15 @@ std::string corrected_toml(const Calibration& c) { return write_robot(c.correcte
 
 Blob calibration_blob(const Calibration& c, const std::string& date) {
   return make_blob(parse_robot(corrected_toml(c), "corrected.toml"), provenance_of(c, date));
+}
+
+std::string refusal_of_blob(const Calibration& c) {
+  try {
+    (void)calibration_blob(c, "");
+  } catch (const Refusal& refusal) {
+    return refusal.what();
+  }
+  return "";
 }
 
 std::string estimated_text(const Calibration& c) {
@@ -74,11 +97,19 @@ std::string figures_text(const Calibration& c) {
   std::string out = "position error [mm]         n      mean    median       max        sd       rms       p95\n";
   out += line_of("train, nominal", c.train.before);
   out += line_of("train, calibrated", c.train.after);
-  if (!c.train.outliers.empty()) out += line_of("  without outliers", c.train.after_good);
+  const auto without = [&](const SplitFigures& figures) {
+    if (!figures.outliers.empty() && figures.after_good.count > 0) out += line_of("  without rows named", figures.after_good);
+  };
+  without(c.train);
+  if (c.cross_validation && !c.test) {
+    out += line_of("left out, nominal", c.cross_validation->figures.before);
+    out += line_of("left out, calibrated", c.cross_validation->figures.after);
+    without(c.cross_validation->figures);
+  }
   if (c.test) {
     out += line_of("test, nominal", c.test->before);
     out += line_of("test, calibrated", c.test->after);
-    if (!c.test->outliers.empty()) out += line_of("  without outliers", c.test->after_good);
+    without(*c.test);
   }
   return out;
 }

@@ -2,6 +2,7 @@
 #include "offline/output/result_json.hpp"
 #include "offline/robot/units.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include <nlohmann/json.hpp>
@@ -27,7 +28,30 @@ Json split(const SplitFigures& f) {
           {"after", figures(f.after)},
           {"before_good", figures(f.before_good)},
           {"after_good", figures(f.after_good)},
-          {"outliers", f.outliers}};
+          {"outliers", f.outliers},
+          {"poses", f.poses},
+          {"after_mean_95_mm", {finite(f.mean.low), finite(f.mean.high)}},
+          {"predicted_mean_mm", f.predicted_mean_mm > 0.0 ? finite(f.predicted_mean_mm) : Json(nullptr)}};
+}
+
+// Standard deviations of base and targets, from the same covariance as the parameters'.
+Json frame_uncertainty(const Calibration& c) {
+  const auto sd = [&](std::size_t first, double factor) {
+    Json list = Json::array();
+    for (std::size_t k = first; k < first + 3; ++k) {
+      list.push_back(k < c.covariance.size ? finite(factor * std::sqrt(std::max(0.0, c.covariance.at(k, k)))) : Json(nullptr));
+    }
+    return list;
+  };
+  Json json = {{"base_rotation_sd_deg", nullptr}, {"base_sd_mm", nullptr}, {"target_sd_mm", Json::array()}};
+  if (c.layout.base) {
+    json["base_rotation_sd_deg"] = sd(0, 1e-3 * deg_per_rad);
+    json["base_sd_mm"] = sd(3, 1.0);
+  }
+  for (std::size_t t = 0; c.layout.target && t < c.layout.targets; ++t) json["target_sd_mm"].push_back(sd(c.layout.base_columns() + 3 * t, 1.0));
+  json["workspace_median_sd_mm"] = finite(c.accuracy.median_mm);
+  json["workspace_median_sd_of_base_and_targets_mm"] = finite(c.accuracy.frames_median_mm);
+  return json;
 }
 
 Json vector_mm(const Vector3& v) { return {finite(v[0]), finite(v[1]), finite(v[2])}; }
@@ -116,6 +140,9 @@ std::string result_json(const Calibration& c, const Assessment& assessment) {
   json["serial"] = c.robot.serial.empty() ? Json(nullptr) : Json(c.robot.serial);
   json["measurements_sha256"] = c.training.digest_sha256;
   json["method"] = c.method;
+  json["usable"] = c.usable();
+  json["reasons"] = c.reasons;
+  json["accepted"] = c.accepted.empty() ? Json(nullptr) : Json(c.accepted);
   json["verdict"] = c.verdict;
   json["converged"] = c.converged;
   json["iterations"] = c.iterations;
@@ -150,11 +177,22 @@ std::string result_json(const Calibration& c, const Assessment& assessment) {
   }
   json["uncertainty"] = {{"prior_scale", finite(c.covariance.prior_scale)},
                          {"degrees_of_freedom", finite(c.covariance.freedom)},
-                         {"coverage_factor", finite(c.covariance.coverage_factor)}};
+                         {"coverage_factor", finite(c.covariance.coverage_factor)},
+                         {"base_and_targets", frame_uncertainty(c)}};
+  json["zero_offsets"] = Json::array();
+  for (const ZeroOffset& zero : c.zeros) {
+    const bool angle = c.robot.geometry.joint[zero.link].kind == JointKind::revolute;
+    json["zero_offsets"].push_back({{"link", zero.link + 1}, {angle ? "offset_deg" : "offset_mm", zero.offset * (angle ? deg_per_rad : 1e3)}});
+  }
   json["bootstrap"] = assessment.bootstrap ? bootstrap_json(c, *assessment.bootstrap) : Json(nullptr);
   json["cross_validation"] = nullptr;
+  if (c.cross_validation) {
+    json["cross_validation"] = split(c.cross_validation->figures);
+    json["cross_validation"]["folds"] = c.cross_validation->folds;
+    json["cross_validation"]["misfit"] = finite(c.cross_validation->misfit);
+  }
   if (assessment.cross_validation) {
-    const CrossValidation& cv = *assessment.cross_validation;
+    const RepeatedCrossValidation& cv = *assessment.cross_validation;
     json["cross_validation"] = {{"folds", cv.folds}, {"before", figures(cv.before)}, {"after", figures(cv.after)}};
   }
   json["dependences"] = Json::array();

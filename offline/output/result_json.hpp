@@ -13,7 +13,7 @@ namespace mdhcal::offline {
 /// What was assessed beside the calibration itself; null in the file where it was not.
 struct Assessment {
   std::optional<Bootstrap> bootstrap;
-  std::optional<CrossValidation> cross_validation;
+  std::optional<RepeatedCrossValidation> cross_validation;
 };
 
 /// A calibration as result.json: figures in millimetres and degrees under keys that say so; every number is

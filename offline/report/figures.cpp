@@ -6,12 +6,8 @@
 #include <iterator>
 #include <map>
 
-#include "offline/identify/folds.hpp"
-#include "offline/identify/reduction.hpp"
-#include "offline/identify/regularized.hpp"
 #include "offline/robot/rotation.hpp"
 #include "offline/robot/vectors.hpp"
-#include "offline/simulate/simulate.hpp"
 
 namespace mdhcal::offline {
 
@@ -83,76 +79,6 @@ const Measurement& measurement(const Calibration& calibration, const RowResult& 
 std::string row_name(const Calibration& calibration, const RowResult& row) {
   const Dataset& data = row.test ? calibration.testing : calibration.training;
   return row_name(data, data.rows[row.row]);
-}
-
-std::optional<LambdaPicture> lambda_picture(const Calibration& calibration) {
-  if (calibration.layout.geometry.empty() || calibration.training_rows.empty()) return std::nullopt;
-  const Dataset& data = calibration.training;
-  Selection selection;
-  selection.rows = calibration.training_rows;
-  selection.robust_weight = calibration.robust_weight;
-  RegularizedControl control;
-  const Folds folds = make_folds(data, selection.rows, control.seed);
-  selection.fold = folds.of_row;
-  selection.folds = folds.count;
-  control.noise_mm = calibration.noise_mm;
-  control.sigma = states_sigma(data) ? 1.0 : calibration.noise_mm;
-
-  Triangle triangle = sum_of(
-      linearise(MeasurementModel(calibration.estimate), data, selection, calibration.layout, control.noise_mm));
-  const std::vector<double> x0 = deviation(calibration.estimate, calibration.layout);
-  LambdaPicture picture;
-  picture.problem = penalised_problem(
-      reduce_frames(triangle.matrix(), calibration.layout.frame_columns(), triangle.row_count()),
-      Eigen::Map<const Eigen::VectorXd>(x0.data(), static_cast<Eigen::Index>(x0.size())));
-  if (picture.problem.rank() == 0) return std::nullopt;
-  const auto add = [&](const std::string& rule, double lambda) {
-    picture.choices.push_back({rule, lambda, std::sqrt(picture.problem.residual_norm2(lambda)),
-                               std::sqrt(picture.problem.solution_norm2(lambda))});
-  };
-  if (calibration.lambda.lambda > 0) add(calibration.lambda.rule + " (chosen)", calibration.lambda.lambda);
-  // A judge predicts every row for some fifty lambdas.
-  constexpr std::size_t most_judged_rows = 20000;
-  for (const auto& [word, rule] : lambda_rules) {
-    const std::string name(word);
-    if (name == calibration.lambda.rule) continue;
-    const bool judged = rule == LambdaRule::rpim || rule == LambdaRule::rpim_train || rule == LambdaRule::cv;
-    if (judged && selection.rows.size() > most_judged_rows) {
-      picture.silent.push_back(name + ": left out, it judges every row many times over");
-      continue;
-    }
-    control.rule = rule;
-    LambdaChoice corner;
-    const LambdaChoice choice = choose_lambda(data, selection, calibration.layout, calibration.estimate, control, corner);
-    if (choice.found && choice.lambda > 0) {
-      add(name, choice.lambda);
-    } else {
-      picture.silent.push_back(name + ": " + (choice.note.empty() ? "no choice on this problem." : choice.note));
-    }
-  }
-  return picture;
-}
-
-PredictedAccuracy predicted_accuracy(const Calibration& calibration) {
-  PredictedAccuracy out;
-  if (calibration.covariance.size == 0) return out;
-  const MeasurementModel model(calibration.estimate);
-  const Frame<double> base_T_tracker = inverted(calibration.estimate.tracker_T_base);
-  Random random(1);
-  std::vector<double> sorted;
-  for (int k = 0; k < 600; ++k) {
-    const auto q = random_readings(calibration.robot.geometry, random);
-    const double sd =
-        predicted_position_sd_mm(model, calibration.layout, calibration.covariance, q.data(), 0);
-    const Vector3 p = transform(base_T_tracker, model.target_position(q.data(), 0));
-    out.points.push_back({1e3 * p[0], 1e3 * p[1], 1e3 * p[2], sd});
-    sorted.push_back(sd);
-  }
-  std::sort(sorted.begin(), sorted.end());
-  out.median_mm = sorted[sorted.size() / 2];
-  out.p95_mm = sorted[sorted.size() * 95 / 100];
-  out.max_mm = sorted.back();
-  return out;
 }
 
 Figure distribution_figure(const Calibration& calibration) {
@@ -259,21 +185,16 @@ Figure vectors_figure(const Calibration& calibration) {
   return figure;
 }
 
-Figure lambda_figure(const LambdaPicture& picture, const LambdaReport& chosen) {
+Figure lambda_figure(const LambdaReport& lambda) {
   std::vector<std::vector<double>> curve;
-  const double low = std::min(picture.problem.smallest_lambda(), chosen.lambda > 0 ? chosen.lambda : HUGE_VAL);
-  const double high = std::max(picture.problem.largest_lambda(), chosen.lambda);
-  for (int k = 0; k <= 120; ++k) {
-    const double lambda = low * std::pow(high / low, k / 120.0);
-    curve.push_back({std::sqrt(picture.problem.residual_norm2(lambda)), std::sqrt(picture.problem.solution_norm2(lambda))});
-  }
+  for (const LambdaReport::Point& p : lambda.l_curve) curve.push_back({p.residual_norm, p.solution_norm});
   Figure figure{"L-curve with the choices of the rules", "", 720, 380};
   figure.script = data_block("curve", curve);
   std::string plots = "$curve with lines lw 2 lc rgb '#999999' title 'L-curve'";
   // Rules often agree: open marks, each another shape and size, so that none hides another.
   constexpr int shapes[] = {7, 4, 8, 12, 6, 10, 14, 1, 2};
-  for (std::size_t k = 0; k < picture.choices.size(); ++k) {
-    const RuleChoice& choice = picture.choices[k];
+  for (std::size_t k = 0; k < lambda.choices.size(); ++k) {
+    const LambdaReport::Choice& choice = lambda.choices[k];
     const std::string name = "c" + std::to_string(k);
     figure.script += data_block(name, {{choice.residual_norm, choice.solution_norm}});
     plots += ", $" + name + " with points pt " + std::to_string(shapes[k % std::size(shapes)]) + " ps " +
@@ -309,7 +230,9 @@ Figure spectrum_figure(const Calibration& calibration) {
 
 Figure accuracy_figure(const PredictedAccuracy& accuracy) {
   Figure figure{"Predicted standard deviation of the position over the workspace, robot's base frame", "", 720, 420};
-  figure.script = data_block("p", accuracy.points) +
+  std::vector<std::vector<double>> points;
+  for (const auto& point : accuracy.points) points.emplace_back(point.begin(), point.end());
+  figure.script = data_block("p", points) +
                   "set xlabel 'x [mm]'\nset ylabel 'y [mm]'\nset zlabel 'z [mm]' rotate\nset grid\nset view 62,38,1,1.15\nset tmargin 0\nset bmargin 0\n"
                   "set xyplane 0.05\nset tics font ',9'\nset cblabel 'standard deviation [mm]'\n"
                   "set palette defined (0 '#440154', 0.5 '#21908c', 1 '#fde725')\n"

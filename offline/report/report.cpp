@@ -36,18 +36,31 @@ const std::vector<std::string> figures_header = {"position error [mm]", "rows", 
 void add_split(Rows& rows, const std::string& label, const SplitFigures& split) {
   rows.push_back(figures_row(label + ", before", split.before));
   rows.push_back(figures_row(label + ", after", split.after));
-  if (!split.outliers.empty()) rows.push_back(figures_row(label + ", after, without outliers", split.after_good));
+  if (!split.outliers.empty() && split.after_good.count > 0) {
+    rows.push_back(figures_row(label + ", after, without the rows named", split.after_good));
+  }
 }
 
 std::string accuracy_section(const Calibration& c) {
   Rows rows{figures_header};
   if (c.test) add_split(rows, "held out", *c.test);
+  if (c.cross_validation) add_split(rows, "left out of folds", c.cross_validation->figures);
   add_split(rows, "training", c.train);
   std::string text = table(rows);
+  Rows bounds{{"", "poses", "mean [mm]", "95 % bounds of the mean [mm]", "predicted mean [mm]"}};
+  const auto add = [&](const char* label, const SplitFigures& f) {
+    const bool known = std::isfinite(f.mean.high);
+    bounds.push_back({label, std::to_string(f.poses), number_cell(f.after.mean, 4),
+                      known ? number_cell(f.mean.low, 4) + " &hellip; " + number_cell(f.mean.high, 4) : "-",
+                      number_cell(f.predicted_mean_mm, 4)});
+  };
+  if (c.test) add("held out", *c.test);
+  if (c.cross_validation) add("left out of folds", c.cross_validation->figures);
+  if (bounds.size() > 1) text += table(bounds);
   text += paragraph(c.test ? "Held-out rows entered nothing but these figures. \"Before\" is the nominal geometry after the "
                              "best fit of base and target on the training rows."
-                           : "There were no test rows: these are errors on the rows that were fitted, so they flatter. "
-                             "Measure some poses more and give them with --test.");
+                           : "Nothing was held out. The rows left out of folds were predicted by fits that had not seen their "
+                             "pose; the training rows were fitted, so they flatter.");
   return text;
 }
 
@@ -90,9 +103,13 @@ std::string outlier_section(const Calibration& c) {
                     std::to_string(measurement(c, row).line), number_cell(before_norm_mm(row), 4), number_cell(after_norm_mm(row), 4)});
   }
   const std::string threshold = number_cell(c.outlier_threshold_mm, 4);
-  if (rows.size() == 1) return paragraph("No row is beyond the outlier threshold of " + threshold + " mm.");
-  return paragraph("Rows beyond the outlier threshold of " + threshold +
-                   " mm. They have no weight in the fit; look at them before you trust the rest.") +
+  if (rows.size() == 1) {
+    return paragraph("No training row is beyond the outlier threshold of " + threshold +
+                     " mm, and no held-out row beyond what the model predicts for it.");
+  }
+  return paragraph("Training rows beyond the outlier threshold of " + threshold +
+                   " mm, which have no weight in the fit or little, and held-out rows beyond what the model predicts for them. "
+                   "Look at them before you trust the rest.") +
          table(rows);
 }
 
@@ -146,13 +163,13 @@ std::string scientific(double value) {
 }  // namespace
 
 std::string report_html(const Calibration& c, const ReportContext& context) {
-  const auto lambda = lambda_picture(c);
-  const PredictedAccuracy accuracy = predicted_accuracy(c);
+  const bool lambda = !c.lambda.choices.empty() && !c.lambda.l_curve.empty();
+  const PredictedAccuracy& accuracy = c.accuracy;
 
   std::vector<Figure> figures{distribution_figure(c), per_pose_figure(c), axes_figure(c), vectors_figure(c),
                               spectrum_figure(c)};
   if (!accuracy.points.empty()) figures.push_back(accuracy_figure(accuracy));
-  if (lambda) figures.push_back(lambda_figure(*lambda, c.lambda));
+  if (lambda) figures.push_back(lambda_figure(c.lambda));
   std::string reason;
   const std::vector<std::string> drawn = draw(figures, reason);
   const auto shown = [&](std::size_t k) { return drawn.empty() ? "" : figure_block(drawn[k], figures[k].title + "."); };
@@ -161,6 +178,7 @@ std::string report_html(const Calibration& c, const ReportContext& context) {
   const std::string title = "Calibration of " + (c.robot.name.empty() ? "a robot" : c.robot.name);
   std::string body = "<h1>" + escaped(title) + "</h1>\n";
   body += "<p class=\"verdict\">" + escaped(c.verdict) + "</p>\n";
+  if (!c.usable()) body += section(c.released() ? "Accepted against these reasons" : "Not usable", list(c.reasons));
   if (drawn.empty()) body += paragraph("This report has no figures: " + reason + ". Everything else is complete.");
   body += section("Accuracy", accuracy_section(c) + shown(0) + shown(1));
   body += section("Where the errors are", shown(2) + shown(3) + outlier_section(c));
@@ -178,11 +196,11 @@ std::string report_html(const Calibration& c, const ReportContext& context) {
   std::string choice = paragraph("Lambda " + scientific(c.lambda.lambda) + " by the rule \"" + c.lambda.rule + "\". " + c.lambda.note);
   if (lambda) {
     Rows rows{{"rule", "lambda", "residual norm", "norm of the deviations"}};
-    for (const RuleChoice& each : lambda->choices) {
+    for (const LambdaReport::Choice& each : c.lambda.choices) {
       rows.push_back({escaped(each.rule), scientific(each.lambda), scientific(each.residual_norm), scientific(each.solution_norm)});
     }
     choice += table(rows) + shown(lambda_index);
-    if (!lambda->silent.empty()) choice += paragraph("Rules without a choice here:") + list(lambda->silent);
+    if (!c.lambda.silent.empty()) choice += paragraph("Rules without a choice here:") + list(c.lambda.silent);
   }
   body += section("Regularization", choice);
   body += section("Registration and target", frames_section(c));

@@ -15,7 +15,12 @@ namespace mdhcal::offline {
 std::string report_with_provenance(const Calibration& calibration, const std::string& date,
                                    const std::string& blob_sha256, ReportContext context);
 
-/// Adds a calibration's files to a folder whose names are result_names; the report only if `with_report`.
+/// The calibration with the last reason that may stand against it: that no controller would accept its blob. That reason
+/// cannot be overruled by --accept.
+Calibration concluded(Calibration calibration);
+
+/// Adds a concluded calibration's files to a folder whose names are result_names; the report only if `with_report`, blob
+/// and corrected.toml only if it is released().
 void write_result(OutputFolder& folder, const Calibration& calibration, const std::string& date, bool with_report,
                   const Assessment& assessment = {});
 

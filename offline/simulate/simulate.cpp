@@ -180,18 +180,6 @@ std::vector<std::size_t> add_outliers(Dataset& set, const SimulationOptions& opt
 
 }  // namespace
 
-Joints random_readings(const Geometry& geometry, Random& random) {
-  Joints q{};
-  for (std::size_t i = 0; i < static_cast<std::size_t>(geometry.joint_count); ++i) {
-    const Joint& joint = geometry.joint[i];
-    const double span = joint.kind == JointKind::revolute ? std::numbers::pi : 0.5;
-    const double low = joint.has_min != 0 ? joint.min : (joint.has_max != 0 ? joint.max - 2 * span : -span);
-    const double high = joint.has_max != 0 ? joint.max : low + 2 * span;
-    q[i] = random.uniform(low, high);
-  }
-  return q;
-}
-
 Simulation simulate(const Robot& robot, const SimulationOptions& options,
                     const std::function<void(std::size_t, std::size_t)>& progress) {
   check_options(options);

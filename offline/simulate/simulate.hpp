@@ -7,6 +7,7 @@
 
 #include "offline/base/random.hpp"
 #include "offline/measure/dataset.hpp"
+#include "offline/robot/random_readings.hpp"
 #include "offline/robot/robot.hpp"
 
 namespace mdhcal::offline {
@@ -49,8 +50,5 @@ struct Simulation {
 /// of them. Throws InputError if an option is out of its range.
 Simulation simulate(const Robot& robot, const SimulationOptions& options,
                     const std::function<void(std::size_t, std::size_t)>& progress = {});
-
-/// Readings drawn evenly within the joint limits: half a turn or half a metre each way where the robot states none.
-Joints random_readings(const Geometry& geometry, Random& random);
 
 }  // namespace mdhcal::offline

@@ -24,4 +24,13 @@ TEST(Distributions, TheUpperTailOfFIsThatOfTheTables) {
   EXPECT_NEAR(f_upper_tail(1, 30000, 30000), 0.5, 1e-9);
 }
 
+// Printed tables of Student's t, two-sided 5 %.
+TEST(Distributions, StudentsQuantilesAreThoseOfTheTables) {
+  EXPECT_NEAR(student_975(1), 12.7062, 1e-4);
+  EXPECT_NEAR(student_975(2), 4.3027, 1e-4);
+  EXPECT_NEAR(student_975(5), 2.5706, 1e-4);
+  EXPECT_NEAR(student_975(14), 2.1448, 1e-4);
+  EXPECT_NEAR(student_975(120), 1.9799, 1e-4);
+}
+
 }  // namespace

@@ -20,7 +20,10 @@ Simulation arm() { return simulate(family_robot("three-parallel"), arm_options(1
 template <class Error>
 std::string said(const Robot& robot, const Dataset& data, const CalibrationOptions& options = {}) {
   try {
-    (void)calibrate(robot, data, options);
+    const Calibration c = calibrate(robot, data, options);
+    std::string reasons;
+    for (const std::string& reason : c.reasons) reasons += reason + ' ';
+    if (!reasons.empty()) return reasons;
   } catch (const Error& e) {
     return e.what();
   } catch (const std::exception& e) {

@@ -72,7 +72,7 @@ TEST(Distances, ABallBarAloneTellsTheArmButNotItsBase) {
   // Lengths say nothing about where the base stands.
   EXPECT_EQ(c.identifiability.frame_unknowns, 9U);
   EXPECT_EQ(c.identifiability.frame_rank, 3U);
-  EXPECT_TRUE(noted(c, "of which these poses tell 3"));
+  EXPECT_TRUE(noted(c, "Lengths tell 3 of the"));
 }
 
 TEST(Distances, DrawWiresToThreeFixedEndsFindTheBaseToo) {
@@ -177,15 +177,19 @@ TEST(JointColumns, TheToolSaysWhichReadingsFitBetter) {
         TableColumns{id_column(s.train)} + (read_is_noisy ? joint_columns(s.train, "_deg", noisy) : joint_columns(s.train)) +
             (read_is_noisy ? joint_columns(s.train, "_cmd_deg") : joint_columns(s.train, "_cmd_deg", noisy)) +
             position_columns(s.train));
+    CalibrationOptions read;
+    read.joints = JointReadings::read;
     CalibrationOptions commanded;
-    commanded.commanded_joints = true;
-    const Calibration with_read = calibrated(s, text);
+    commanded.joints = JointReadings::commanded;
+    const Calibration with_read = calibrated(s, text, read);
     const Calibration with_commanded = calibrated(s, text, commanded);
     const std::string verdict = std::string("The ") + (read_is_noisy ? "commanded" : "read") + " joint angles fit better";
     EXPECT_TRUE(noted(with_read, verdict)) << read_is_noisy;
     EXPECT_TRUE(noted(with_commanded, verdict)) << read_is_noisy;
-    EXPECT_EQ(noted(with_read, "--joints commanded"), read_is_noisy);
-    EXPECT_EQ(noted(with_commanded, "--joints read"), !read_is_noisy);
+    // Unless told otherwise it takes the better ones, and says so.
+    const Calibration better = calibrated(s, text);
+    EXPECT_TRUE(noted(better, std::string("The ") + (read_is_noisy ? "commanded" : "read") + " ones are used."));
+    EXPECT_EQ(better.scale_mm, (read_is_noisy ? with_commanded : with_read).scale_mm);
     // It is right: the better fitting one lies closer to the truth.
     EXPECT_EQ(distance_from_truth_mm(s, with_commanded, 300, 1) < distance_from_truth_mm(s, with_read, 300, 1),
               read_is_noisy);
