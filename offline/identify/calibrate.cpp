@@ -275,7 +275,7 @@ void tell_parameters(const Work& work, Calibration& out) {
   out.identifiability.before =
       spectrum_of(linearised(data, work.selection, out.layout, out.start, out.noise_mm).system);
   out.covariance = covariance_of(data, work.selection, out.layout, at.system, at.problem, work.regularized.fit,
-                                 out.lambda.lambda, at.independent_share, out.noise_mm);
+                                 out.lambda.lambda, independent_share_of_poses(data, work.selection, model), out.noise_mm);
   const std::size_t frames = out.layout.frame_columns();
   for (std::size_t i = 0; i < out.layout.geometry.size(); ++i) {
     const Parameter& parameter = out.layout.geometry[i];

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <map>
 #include <numeric>
+#include <utility>
 
 #include "offline/base/error.hpp"
 #include "offline/base/random.hpp"
@@ -94,21 +95,23 @@ double FoldJudge::error_mm(double lambda) const {
   return count > 0 ? sum / static_cast<double>(count) : HUGE_VAL;
 }
 
-double independent_share(const Dataset& data, const Selection& selection, const MeasurementModel& model) {
+namespace {
+
+double share(const Dataset& data, const Selection& selection, const MeasurementModel& model, bool by_target) {
   struct Cell {
     std::size_t count = 0;
     double sum[3] = {0, 0, 0};
     double squares = 0;
   };
   const std::vector<std::uint32_t> pose = poses_of(data, selection.rows);
-  std::map<std::uint32_t, Cell> cells;
+  std::map<std::pair<std::uint32_t, std::uint32_t>, Cell> cells;
   for (std::size_t i = 0; i < selection.rows.size(); ++i) {
     const Measurement& m = data.rows[selection.rows[i]];
     if (m.kind == MeasurementKind::distance) continue;
     if (!selection.robust_weight.empty() && selection.robust_weight[i] < outlier_weight) continue;
     double r[max_row_residuals];
     model.residual(data, selection.rows[i], r);
-    Cell& cell = cells[pose[i]];
+    Cell& cell = cells[{pose[i], by_target ? m.target : 0U}];
     ++cell.count;
     for (std::size_t k = 0; k < 3; ++k) {
       cell.sum[k] += r[k];
@@ -138,6 +141,16 @@ double independent_share(const Dataset& data, const Selection& selection, const 
   if (!(shared + scatter > 0.0)) return 1.0;
   const double effect = 1.0 + (n - 1.0) * shared / (shared + scatter);
   return (rows - repeats + repeats / effect) / rows;
+}
+
+}  // namespace
+
+double independent_share(const Dataset& data, const Selection& selection, const MeasurementModel& model) {
+  return share(data, selection, model, true);
+}
+
+double independent_share_of_poses(const Dataset& data, const Selection& selection, const MeasurementModel& model) {
+  return share(data, selection, model, false);
 }
 
 double training_error_mm(const Dataset& data, const Selection& selection, const Layout& layout, const Estimate& at,

@@ -174,7 +174,7 @@ TEST(Calibrate, SameInputSameBytes) {
 
 TEST(Calibrate, PackingTheCorrectedRobotGivesTheSameModel) {
   const TemporaryFolder folder;
-  ASSERT_EQ(run_mdhcal({"calibrate", example("robot.toml"), example("nine.csv"), "-o", folder / "r"}).exit_code, 0);
+  ASSERT_EQ(run_mdhcal({"calibrate", example("robot.toml"), example("eighteen.csv"), "--base", "given", "--tool", "given", "-o", folder / "r"}).exit_code, 0);
   ASSERT_EQ(run_mdhcal({"pack", folder / "r/corrected.toml", "-o", folder / "again.blob"}).exit_code, 0);
   const Outcome a = run_mdhcal({"forward", folder / "r/calibration.blob", example("nine.csv"), "--quiet", "--frame", "tracker"});
   const Outcome b = run_mdhcal({"forward", folder / "again.blob", example("nine.csv"), "--quiet", "--frame", "tracker"});

@@ -62,8 +62,9 @@ TEST(Report, HoldsEverySectionAndEveryFigure) {
     const bool chosen = word == sample().lambda.rule;
     const bool table = html.find("<td>" + word + (chosen ? " (chosen)" : "") + "</td>") != std::string::npos;
     const bool mark = html.find('>' + word + (chosen ? " (chosen)" : "") + "</tspan>") != std::string::npos;
-    EXPECT_EQ(table, mark) << word;
-    EXPECT_NE(table, html.find("<li>" + word + ": ") != std::string::npos) << word;
+    const bool silent = html.find("<li>" + word + ": ") != std::string::npos;
+    EXPECT_NE(mark, silent) << word;
+    EXPECT_TRUE(silent || table) << word;
   }
   EXPECT_EQ(html.find("<script"), std::string::npos);
   EXPECT_EQ(html.find(">nan"), std::string::npos);
