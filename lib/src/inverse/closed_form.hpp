@@ -34,7 +34,8 @@ inline Real angle_between(const Vector& axis, const Vector& p, const Vector& q) 
 }
 
 /// The two angles with h . turned(axis, angle, p) = d; the nearest ones if there are none. `spread` is the least half
-/// difference of the two, so that a nearly double root gives values on both sides. Returns the half difference.
+/// difference of the two, so that a nearly double root gives values on both sides. Returns the half difference; where there are
+/// no angles minus the root of twice what the cosine passes 1 by, which goes on from it as if it were imaginary.
 inline Real angles_to_plane(const Vector& h, const Vector& axis, const Vector& p, Real d, Real spread, Real* angle) {
   const Vector side = cross(axis, p);
   const Real a = inner(h, side);
@@ -42,14 +43,21 @@ inline Real angles_to_plane(const Vector& h, const Vector& axis, const Vector& p
   const Real c = d - inner(h, axis) * inner(axis, p);
   const Real size = square_root(a * a + b * b);
   const Real middle = size > Real{0} ? arc_tangent(a, b) : Real{0};
-  const Real half = size > Real{0} ? arc_cosine(c / size) : Real{0};
+  const Real cosine = size > Real{0} ? c / size : Real{1};
+  const Real half = arc_cosine(cosine);
   constexpr Real straight = Real(3.14159265358979323846);
   Real apart = half < spread ? spread : half;
   if (apart > straight - spread) apart = straight - spread;
   angle[0] = middle + apart;
   angle[1] = middle - apart;
+  const Real excess = magnitude(cosine) - Real{1};
+  if (excess > Real{0}) return -square_root(Real{2} * excess);
   return half < straight - half ? half : straight - half;
 }
+
+/// Whether a branch is out of reach, going by what angles_to_plane() returned: by a fifth of the length that decides, far more
+/// than an arm's errors make.
+inline bool far_from_root(Real half) { return half < Real(-0.63); }
 
 inline Vector row_of(const Real* r, const Vector& v) {
   return {r[0] * v.x + r[1] * v.y + r[2] * v.z, r[3] * v.x + r[4] * v.y + r[5] * v.z, r[6] * v.x + r[7] * v.y + r[8] * v.z};
@@ -103,7 +111,7 @@ inline void read_screws(const Arm<Real>& arm, Screws& screws) {
 struct StartingValues {
   std::int32_t count;      ///< 0 ... 8
   Real coordinates[8][6];
-  Real smallest;           ///< smallest half difference of two roots of joints 1 and 3: small near a fold [rad]
+  Real smallest;           ///< smallest half difference, real or not, of two roots of joints 1 and 3: small near a fold [rad]
   Real wrist_smallest;     ///< that of joint 5: small near a straight wrist [rad]
   Real base_radius_m;      ///< how far the wrist is from axis 1 [m]
 };
@@ -119,6 +127,7 @@ struct Departure {
 /// turn it there (Paden, Kahan: third and first subproblem).
 struct Elbow {
   Real second[2], third[2];
+  bool far;   ///< out of reach
 };
 
 inline Elbow bend_elbow(const Screws& s, const Vector& p, const Vector& across, Real spread, StartingValues& values) {
@@ -126,7 +135,8 @@ inline Elbow bend_elbow(const Screws& s, const Vector& p, const Vector& across, 
   Elbow elbow;
   const Real distance = Real(0.5) * (inner(p, p) + inner(q, q) - inner(across, across));
   const Real half = angles_to_plane(q, s.axis[2], p, distance, spread, elbow.third);
-  if (half < values.smallest) values.smallest = half;
+  elbow.far = far_from_root(half);
+  if (magnitude(half) < values.smallest) values.smallest = magnitude(half);
   for (int i = 0; i < 2; ++i) {
     elbow.second[i] = angle_between(s.axis[1], turned(s.axis[2], elbow.third[i], p) - q, across);
   }
@@ -162,7 +172,10 @@ inline void closed_form(const Screws& s, const Frame<Real>& target, const Depart
   values.base_radius_m = line_distance(moved, o[0], k[0]);
   Real first[2];
   // Turns about axes along h leave the height along h as it is, so joint 1 alone sets it.
-  values.smallest = angles_to_plane(h, Real{-1} * k[0], moved - o[0], inner(h, s.meet - o[0]), spread, first);
+  const Real shoulder = angles_to_plane(h, Real{-1} * k[0], moved - o[0], inner(h, s.meet - o[0]), spread, first);
+  values.smallest = magnitude(shoulder);
+  const bool exact = !(magnitude(departure.base_turn) + magnitude(departure.wrist_turn) > Real{0});
+  if (exact && far_from_root(shoulder)) return;
   for (const Real root : first) {
     const Real c1 = root + departure.base_turn;
     const Vector lowered = o[0] + turned(k[0], -c1, moved - o[0]);
@@ -170,28 +183,28 @@ inline void closed_form(const Screws& s, const Frame<Real>& target, const Depart
       const Vector h_flange = row_of(gt, turned(k[0], c1, h));
       Real fifth[2];
       const Real half = angles_to_plane(h, k[4], k[5], inner(h_flange, k[5]), spread, fifth);
-      if (half < values.wrist_smallest) values.wrist_smallest = half;
+      if (magnitude(half) < values.wrist_smallest) values.wrist_smallest = magnitude(half);
       for (const Real c5 : fifth) {
         const Real c6 = departure.wrist_turn - angle_between(k[5], turned(k[4], -c5, h), h_flange);
         // The sum of turns 2, 3, 4 from what it does to axis 5, which is across h.
         const Vector carried = turned(k[0], -c1, row_of(g, turned(k[5], -c6, k[4])));
         const Real sum = angle_between(h, k[4], carried);
         const Elbow elbow = bend_elbow(s, o[3] - o[2], lowered - turned(h, sum, s.meet - o[3]) - o[1], spread, values);
-        for (int i = 0; i < 2; ++i) {
+        for (int i = 0; i < 2 && !(exact && elbow.far); ++i) {
           add_value(values, c1, elbow.second[i], elbow.third[i], sum - elbow.second[i] - elbow.third[i], c5, c6);
         }
       }
       continue;
     }
     const Elbow elbow = bend_elbow(s, s.meet - o[2], lowered - o[1], spread, values);
-    for (int i = 0; i < 2; ++i) {
+    for (int i = 0; i < 2 && !(exact && elbow.far); ++i) {
       const Real c2 = elbow.second[i];
       const Real c3 = elbow.third[i];
       const Vector sixth = turned(k[2], -c3, turned(k[1], -c2, turned(k[0], -c1, row_of(g, k[5]))));
       const Vector fourth = row_of(gt, turned(k[0], c1, turned(k[1], c2, turned(k[2], c3, k[3]))));
       Real fifth[2];
       const Real half = angles_to_plane(k[3], k[4], k[5], inner(k[3], sixth), spread, fifth);
-      if (half < values.wrist_smallest) values.wrist_smallest = half;
+      if (magnitude(half) < values.wrist_smallest) values.wrist_smallest = magnitude(half);
       for (const Real c5 : fifth) {
         const Vector bent = turned(k[4], c5, k[5]);
         const Real back = inner(k[3], bent) < Real{0} ? departure.wrist_turn : -departure.wrist_turn;

@@ -4,6 +4,7 @@
 #include "arm/chain.hpp"
 #include "inverse/closed_form.hpp"
 #include "inverse/levenberg.hpp"
+#include "inverse/regular_tick.hpp"
 #include "number/real.hpp"
 #include "inverse/goal_valid.hpp"
 
@@ -17,8 +18,11 @@ constexpr Real same_solution = sizeof(Real) == sizeof(double) ? Real(1e-3) : Rea
 
 struct Search {
   const Real* posture;
+  Pose<Real> target;
   Goal goal;
+  TickOptions<Real> tick;       ///< the same goal, no step limits
   std::uint32_t periodic_mask;  ///< joints for which a full turn of the reading changes nothing
+  mutable Real smallest;        ///< singular value near any solution found so far, a bound from below; at first 1
 };
 
 bool bit(std::uint32_t mask, std::int32_t j) { return ((mask >> static_cast<std::uint32_t>(j)) & 1U) != 0U; }
@@ -41,21 +45,47 @@ std::uint32_t periodic_joints(const Arm<Real>& arm) {
   return mask;
 }
 
-// Moves each periodic joint by full turns to the allowed one nearest to the posture. Returns whether all limits hold.
-bool choose_turns(const Search& search, Real* q) {
+// The least integer that is not below x.
+Real up(Real x) {
+  const Real nearest_whole = whole(x);
+  return nearest_whole < x ? nearest_whole + Real{1} : nearest_whole;
+}
+
+// Moves q, reading j, by the fewest full turns from the one nearest to the posture to an allowed one, which may be beyond
+// a limit by `slack` and is then put on it. Returns whether there is one.
+bool choose_turn(const Search& search, std::int32_t j, Real slack, Real& q) {
   const Arm<Real>& arm = *search.goal.arm;
-  for (std::int32_t j = 0; j < arm.joint_count; ++j) {
-    const bool has_min = bit(arm.min_mask, j);
-    const bool has_max = bit(arm.max_mask, j);
-    if (bit(search.periodic_mask, j)) {
-      q[j] -= full_turn * whole((q[j] - search.posture[j]) / full_turn);
-      if (has_min && q[j] < arm.min[j]) q[j] += full_turn * whole((arm.min[j] - q[j]) / full_turn + Real(0.499999));
-      if (has_max && q[j] > arm.max[j]) q[j] -= full_turn * whole((q[j] - arm.max[j]) / full_turn + Real(0.499999));
-    }
-    if (has_min && q[j] < arm.min[j]) return false;
-    if (has_max && q[j] > arm.max[j]) return false;
+  const Real min = bit(arm.min_mask, j) ? arm.min[j] : -static_cast<Real>(max_reading);
+  const Real max = bit(arm.max_mask, j) ? arm.max[j] : static_cast<Real>(max_reading);
+  Real turned = q;
+  if (bit(search.periodic_mask, j)) {
+    turned -= full_turn * whole((turned - search.posture[j]) / full_turn);
+    if (turned < min - slack) turned += full_turn * up((min - slack - turned) / full_turn);
+    if (turned > max + slack) turned -= full_turn * up((turned - max - slack) / full_turn);
   }
+  if (turned < min - slack || turned > max + slack) return false;
+  q = turned < min ? min : (turned > max ? max : turned);
   return true;
+}
+
+// How a value found fits the joint limits: as it is, but for turns or a limit that it was moved by or put on, or not.
+enum class Fit : std::int32_t { as_it_is, moved, outside };
+
+// Beyond a limit by no more than the tolerance is on it; else by no more than what tells two solutions apart, if no full turn
+// is allowed.
+Fit fit_limits(const Search& search, Real* q) {
+  const GoalOptions<Real>& goal = *search.goal.options;
+  const Real tolerance = goal.rotation_tolerance_rad < same_solution ? goal.rotation_tolerance_rad : same_solution;
+  Fit fit = Fit::as_it_is;
+  for (std::int32_t j = 0; j < search.goal.arm->joint_count; ++j) {
+    const Real unit = joint_unit(search.goal, j);
+    const Real before = q[j];
+    if (!choose_turn(search, j, tolerance * unit, q[j]) && !choose_turn(search, j, same_solution * unit, q[j])) {
+      return Fit::outside;
+    }
+    if (magnitude(q[j] - before) > Real{0}) fit = Fit::moved;
+  }
+  return fit;
 }
 
 Real joint_distance(const Search& search, const Real* a, const Real* b, bool modulo) {
@@ -78,14 +108,45 @@ bool meets(const Search& search, const Real* q) {
   return met;
 }
 
-// Refines a starting value and adds what it leads to, if that is new; a full list keeps the nearest. The list is
+// From a starting value to joints that meet the pose: the regular tick where the value is near enough for it.
+bool arrive(const Search& search, Real* q) {
+  const std::int32_t joints = search.goal.arm->joint_count;
+  if (joints == 6 && search.goal.options->task == Task::pose) {
+    TickState state;
+    static_cast<Goal&>(state) = search.goal;
+    state.tick = &search.tick;
+    state.evaluations = 0;
+    for (std::int32_t j = 0; j < joints; ++j) {
+      state.q[j] = q[j];
+      state.low[j] = -static_cast<Real>(max_reading);
+      state.high[j] = static_cast<Real>(max_reading);
+    }
+    Look look;
+    if (regular_tick(state, look)) {
+      for (std::int32_t j = 0; j < joints; ++j) q[j] = state.q[j];
+      if (state.smallest_singular_value < search.smallest) search.smallest = state.smallest_singular_value;
+      return true;
+    }
+  }
+  if (!refine(search.goal, q)) return false;
+  search.smallest = 0;  // the value was far, or the arm is near a singularity
+  return true;
+}
+
+// Joints that met the pose, within the limits now; those of them that were moved are looked at again, since turns are added in
+// rounded numbers and a limit takes the rest of a joint's motion away: the others then make up for it.
+bool settle(const Search& search, Real* q) {
+  const Fit fit = fit_limits(search, q);
+  if (fit != Fit::moved) return fit == Fit::as_it_is;
+  if (!readings_valid(*search.goal.arm, q)) return false;
+  return meets(search, q) || tick(*search.goal.arm, search.tick, search.target, q) == Status::ok;
+}
+
+// Goes on from a starting value and adds what it leads to, if that is new; a full list keeps the nearest. The list is
 // sorted at all times.
 void consider(const Search& search, Real* q, Solutions<Real>& found) {
   const std::int32_t joints = search.goal.arm->joint_count;
-  if (!refine(search.goal, q)) return;
-  if (!choose_turns(search, q)) return;
-  // Full turns are added in rounded numbers.
-  if (!readings_valid(*search.goal.arm, q) || !meets(search, q)) return;
+  if (!arrive(search, q) || !settle(search, q)) return;
   for (std::int32_t k = 0; k < found.count; ++k) {
     if (joint_distance(search, q, found.q[k], true) < same_solution) return;
   }
@@ -139,6 +200,12 @@ bool readings_of(const Arm<Real>& arm, const Real* coordinates, Real* q) {
 
 // Roots that coincide within this are also tried apart [rad].
 constexpr Real nearly_double = Real(0.35);
+// A singular value below this, a bound that is at most sqrt(6) below it, is that of an arm within 0.01 of a singularity: a
+// solution may be one of several close together.
+constexpr Real nearly_singular = Real(0.004);
+// A wrist that the closed form has straighter than this is near its singularity whatever was found: the angle that errors of
+// 5 mm and half a degree come to twice over [rad].
+constexpr Real nearly_straight = Real(0.03);
 // With a nearly straight wrist joint 6 may be anywhere as long as the joints before it make up for it, and with the wrist
 // nearly on axis 1, within this part of the reach, joint 1 may: where the pose is met depends on the arm's errors, so it
 // is tried all around. Solutions lie in pairs close together there; so many values find nine of ten poses complete.
@@ -157,14 +224,20 @@ void try_departure(const Search& search, const Screws& screws, const Departure& 
   for (std::int32_t k = 0; k < values.count; ++k) consider_coordinates(search, values.coordinates[k], found);
 }
 
+// Whether there may be solutions that the closed form's plain values do not lead to.
+bool may_be_more(const Search& search, const Solutions<Real>& found) {
+  return found.count == 0 || search.smallest < nearly_singular;
+}
+
 // The closed form's values; on both sides of folds; all around where a joint may be anywhere, with `first_only` only if
 // nothing was found before.
 void try_closed_form(const Search& search, const Screws& screws, bool first_only, Solutions<Real>& found) {
   StartingValues values;
   try_departure(search, screws, {Real{0}, Real{0}, Real{0}}, values, found);
-  const bool straight = values.wrist_smallest < nearly_double;
-  const bool above = values.base_radius_m < near_axis * search.goal.arm->reach_m;
-  if (straight || values.smallest < nearly_double) {
+  const bool singular = may_be_more(search, found);
+  const bool straight = values.wrist_smallest < (singular ? nearly_double : nearly_straight);
+  const bool above = singular && values.base_radius_m < near_axis * search.goal.arm->reach_m;
+  if (values.wrist_smallest < nearly_double || values.smallest < nearly_double) {
     try_departure(search, screws, {Real(0.1), Real{0}, Real{0}}, values, found);
     try_departure(search, screws, {Real(0.3), Real{0}, Real{0}}, values, found);
   }
@@ -211,11 +284,13 @@ void search_all(const Search& search, std::int32_t restarts, bool first_only, So
   read_screws(*search.goal.arm, screws);
   found.count = 0;
   found.family = screws.family;
-  Real q[max_joints];
-  for (std::int32_t j = 0; j < search.goal.arm->joint_count; ++j) q[j] = search.posture[j];
-  consider(search, q, found);
-  if (screws.family != ArmFamily::general && search.goal.options->task == Task::pose) {
-    try_closed_form(search, screws, first_only, found);
+  const bool closed = screws.family != ArmFamily::general && search.goal.options->task == Task::pose;
+  if (closed) try_closed_form(search, screws, first_only, found);
+  // Where the closed form has found what there is, the posture leads to nothing new.
+  if (!closed || may_be_more(search, found)) {
+    Real q[max_joints];
+    for (std::int32_t j = 0; j < search.goal.arm->joint_count; ++j) q[j] = search.posture[j];
+    consider(search, q, found);
   }
   try_restarts(search, restarts, first_only, found);
 }
@@ -229,6 +304,10 @@ bool prepare(const Arm<Real>& arm, const SolutionOptions<Real>& options, const P
   search.goal.arm = &arm;
   search.goal.options = &options.goal;
   search.goal.length_m = length_unit(arm);
+  search.target = target;
+  search.smallest = 1;
+  search.tick = default_tick_options(arm);
+  search.tick.goal = options.goal;
   to_frame(target, search.goal.target);
   return true;
 }
@@ -261,7 +340,7 @@ Status cold_start(const Arm<Real>& arm, const SolutionOptions<Real>& options, co
   Search search;
   if (!prepare(arm, options, base_T_flange, q, search)) return Status::bad_input;
   Solutions<Real> found;
-  search_all(search, options.restarts > 0 ? options.restarts : max_restarts, true, found);
+  search_all(search, options.restarts, true, found);
   if (found.count == 0) return Status::out_of_reach;
   for (std::int32_t j = 0; j < arm.joint_count; ++j) q[j] = found.q[0][j];
   return Status::ok;
