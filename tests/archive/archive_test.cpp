@@ -122,8 +122,8 @@ TEST(Environment, FlushingOfSubnormalsIsRefused) {
   for (const unsigned int bits : {0x8000U, 0x0040U}) {  // flush to zero; denormals are zero
     _mm_setcsr(normal | bits);
     const Status status = check_environment();
-    CompensatorModel<double> model{};
-    const Status made = make_compensator(test::ur5(), test::ur5(), model);
+    CalibratedArm<double> model{};
+    const Status made = make_calibrated_arm(test::ur5(), test::ur5(), model);
     _mm_setcsr(normal);
     EXPECT_EQ(status, Status::bad_environment) << bits;
     EXPECT_EQ(made, Status::bad_environment) << bits;

@@ -8,12 +8,10 @@ namespace mdhcal {
 
 namespace {
 
-bool inside(double value, double bound) { return within(-bound, value, bound); }
-
 bool valid(const Link& link) {
-  return inside(link.alpha_rad, max_angle_rad) && inside(link.a_m, max_length_m) &&
-         inside(link.theta_rad, max_angle_rad) && inside(link.d_m, max_length_m) &&
-         inside(link.beta_rad, max_angle_rad);
+  return within_bound(link.alpha_rad, max_angle_rad) && within_bound(link.a_m, max_length_m) &&
+         within_bound(link.theta_rad, max_angle_rad) && within_bound(link.d_m, max_length_m) &&
+         within_bound(link.beta_rad, max_angle_rad);
 }
 
 bool valid(const Joint& joint, std::int32_t own, std::int32_t count) {
@@ -21,12 +19,12 @@ bool valid(const Joint& joint, std::int32_t own, std::int32_t count) {
   if (joint.sign != 1 && joint.sign != -1) return false;
   if (joint.has_min != 0 && joint.has_min != 1) return false;
   if (joint.has_max != 0 && joint.has_max != 1) return false;
-  if (joint.has_min == 1 && !inside(joint.min, max_reading)) return false;
-  if (joint.has_max == 1 && !inside(joint.max, max_reading)) return false;
+  if (joint.has_min == 1 && !within_bound(joint.min, max_reading)) return false;
+  if (joint.has_max == 1 && !within_bound(joint.max, max_reading)) return false;
   if (joint.has_min == 1 && joint.has_max == 1 && !(joint.min <= joint.max)) return false;
   for (std::int32_t j = 0; j < static_cast<std::int32_t>(max_joints); ++j) {
-    const bool zero = inside(joint.coupling[j], 0.0);
-    if ((j == own || j >= count) ? !zero : !inside(joint.coupling[j], max_coupling)) return false;
+    const bool zero = within_bound(joint.coupling[j], 0.0);
+    if ((j == own || j >= count) ? !zero : !within_bound(joint.coupling[j], max_coupling)) return false;
   }
   return true;
 }
@@ -34,12 +32,12 @@ bool valid(const Joint& joint, std::int32_t own, std::int32_t count) {
 bool valid(const Pose<double>& pose) {
   double norm2 = 0.0;
   for (double c : pose.quaternion) {
-    if (!inside(c, 2.0)) return false;
+    if (!within_bound(c, 2.0)) return false;
     norm2 += c * c;
   }
   if (!(norm2 >= 1.0 - 1e-9 && norm2 <= 1.0 + 1e-9)) return false;
   for (double p : pose.position_m) {
-    if (!inside(p, max_length_m)) return false;
+    if (!within_bound(p, max_length_m)) return false;
   }
   return true;
 }
@@ -47,7 +45,7 @@ bool valid(const Pose<double>& pose) {
 // Exactly: a flange that is off by a rounding is one.
 bool is_identity(const Pose<double>& pose) {
   for (int k = 0; k < 3; ++k) {
-    if (!inside(pose.position_m[k], 0.0) || !inside(pose.quaternion[k + 1], 0.0)) return false;
+    if (!within_bound(pose.position_m[k], 0.0) || !within_bound(pose.quaternion[k + 1], 0.0)) return false;
   }
   return true;
 }

@@ -4,6 +4,7 @@
 #include "blob/blob_fields.hpp"
 #include "mdhcal/arm.hpp"
 #include "mdhcal/crc32.hpp"
+#include "number/compare.hpp"
 
 // How far the corrected geometry may be from its nominal. A calibration moves an arm's parameters by millimetres; a
 // blob that moves them by more is a mistake or a trap. An integrator may compile other bounds.
@@ -131,17 +132,17 @@ bool vector_valid(const std::uint8_t* record, std::size_t joints) {
   Real norm2 = 0;
   for (std::size_t i = 0; i < 4; ++i) {
     const Real c = load_real<Real>(pose + i * step);
-    if (!within(c, Real{2})) return false;
+    if (!within_bound(c, Real{2})) return false;
     norm2 += c * c;
   }
   bool valid = norm2 >= static_cast<Real>(0.9999) && norm2 <= static_cast<Real>(1.0001);
   for (std::size_t i = 4; i < 7; ++i) {
-    valid = valid && within(load_real<Real>(pose + i * step), static_cast<Real>(max_vector_position_m));
+    valid = valid && within_bound(load_real<Real>(pose + i * step), static_cast<Real>(max_vector_position_m));
   }
   for (std::size_t i = 0; i < max_joints; ++i) {
     const Real bound = i < joints ? reading : Real{0};
-    valid = valid && within(load_real<Real>(record + i * step), bound) &&
-            within(load_real<Real>(inverse + i * step), bound);
+    valid = valid && within_bound(load_real<Real>(record + i * step), bound) &&
+            within_bound(load_real<Real>(inverse + i * step), bound);
   }
   const std::int32_t status = load_i32(inverse + max_joints * step);
   return valid && status >= 0 && status <= static_cast<std::int32_t>(Status::not_converged);
@@ -151,11 +152,11 @@ bool pose_valid(const std::uint8_t* p) {
   double norm2 = 0.0;
   for (std::size_t i = 0; i < 4; ++i) {
     const double c = load_f64(p + 8 * i);
-    if (!within(c, 2.0)) return false;
+    if (!within_bound(c, 2.0)) return false;
     norm2 += c * c;
   }
   bool valid = norm2 >= 1.0 - 1e-9 && norm2 <= 1.0 + 1e-9 && load_f64(p) >= 0.0;
-  for (std::size_t i = 4; i < 7; ++i) valid = valid && within(load_f64(p + 8 * i), max_length_m);
+  for (std::size_t i = 4; i < 7; ++i) valid = valid && within_bound(load_f64(p + 8 * i), max_length_m);
   return valid;
 }
 
@@ -170,7 +171,7 @@ Status check_values(const std::uint8_t* bytes) {
     const std::uint8_t* record = bytes + at::targets + i * at::target_size;
     valid = valid && text_valid(record, at::target_name_size);
     for (std::size_t k = 0; k < 3; ++k) {
-      valid = valid && within(load_f64(record + at::target_point + 8 * k), max_length_m);
+      valid = valid && within_bound(load_f64(record + at::target_point + 8 * k), max_length_m);
     }
   }
   for (std::size_t k = 0; k < 2; ++k) {
@@ -195,11 +196,11 @@ Status check_values(const std::uint8_t* bytes) {
 }
 
 bool near(const Link& corrected, const Link& nominal) {
-  return within(corrected.alpha_rad - nominal.alpha_rad, max_deviation_rad()) &&
-         within(corrected.a_m - nominal.a_m, max_deviation_m()) &&
-         within(corrected.theta_rad - nominal.theta_rad, max_deviation_rad()) &&
-         within(corrected.d_m - nominal.d_m, max_deviation_m()) &&
-         within(corrected.beta_rad - nominal.beta_rad, max_deviation_rad());
+  return within_bound(corrected.alpha_rad - nominal.alpha_rad, max_deviation_rad()) &&
+         within_bound(corrected.a_m - nominal.a_m, max_deviation_m()) &&
+         within_bound(corrected.theta_rad - nominal.theta_rad, max_deviation_rad()) &&
+         within_bound(corrected.d_m - nominal.d_m, max_deviation_m()) &&
+         within_bound(corrected.beta_rad - nominal.beta_rad, max_deviation_rad());
 }
 
 Status check_geometry(const std::uint8_t* bytes) {

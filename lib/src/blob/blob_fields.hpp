@@ -7,12 +7,6 @@
 
 namespace mdhcal {
 
-// Finite and within +-bound: a comparison with NaN is false.
-template <class Real>
-static inline bool within(Real value, Real bound) {
-  return value >= -bound && value <= bound;
-}
-
 /// Whether `size` bytes are all zero.
 bool all_zero(const std::uint8_t* p, std::size_t size) noexcept;
 

@@ -5,6 +5,7 @@
 
 #include "mdhcal/inverse.hpp"
 #include "mdhcal/kinematics.hpp"
+#include "number/compare.hpp"
 #include "number/real.hpp"
 
 namespace mdhcal {
@@ -32,11 +33,9 @@ Share<Precision> share_of(const BlobContent& model) {
   }
 }
 
-bool within(Real value, Real bound) { return value >= -bound && value <= bound; }
-
 bool near(const Pose<Real>& a, const Pose<Real>& b, Real bound) {
   for (int k = 0; k < 3; ++k) {
-    if (!within(a.position_m[k] - b.position_m[k], bound)) return false;
+    if (!within_bound(a.position_m[k] - b.position_m[k], bound)) return false;
   }
   // The vector part of conj(a) b is sin(angle / 2) times the axis.
   const Real* p = a.quaternion;
@@ -70,7 +69,7 @@ Status run(const SelfTestVector<Real>& vector, const Arm<Real>& arm, const Share
     // Where the host's inverse did not arrive, another arithmetic need not stop in the same place.
     if (vector.inverse_status == static_cast<std::int32_t>(Status::ok)) {
       passed = passed && status == Status::ok;
-      for (std::size_t i = 0; i < max_joints; ++i) passed = passed && within(q[i] - vector.inverse_q[i], share.bound);
+      for (std::size_t i = 0; i < max_joints; ++i) passed = passed && within_bound(q[i] - vector.inverse_q[i], share.bound);
     }
   }
   return passed ? Status::ok : Status::self_test_failed;

@@ -12,6 +12,10 @@ inline bool within(T low, T x, T high) {
   return __builtin_isgreaterequal(x, low) && __builtin_islessequal(x, high);
 }
 
+/// |x| <= bound; no NaN is, silently.
+inline bool within_bound(double x, double bound) { return __builtin_islessequal(__builtin_fabs(x), bound); }
+inline bool within_bound(float x, float bound) { return __builtin_islessequal(__builtin_fabsf(x), bound); }
+
 /// The nearest to x of low ... high.
 template <class T>
 inline T clamp(T low, T x, T high) {
