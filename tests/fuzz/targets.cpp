@@ -89,7 +89,7 @@ void loader_target(const std::uint8_t* data, std::size_t size) {
   if (data == nullptr) return;  // a null pointer is bad input in C, whatever its size
   with_repaired(data, size, [](const std::uint8_t* bytes, std::size_t count) {
     load_once<mdhcal_calibrated_arm, mdhcal_pose, double>(mdhcal_load, mdhcal_joint_count, mdhcal_forward, bytes, count);
-    load_once<mdhcalf_model, mdhcalf_pose, float>(mdhcalf_load, mdhcalf_joint_count, mdhcalf_forward, bytes, count);
+    load_once<mdhcalf_calibrated_arm, mdhcalf_pose, float>(mdhcalf_load, mdhcalf_joint_count, mdhcalf_forward, bytes, count);
   });
 }
 
