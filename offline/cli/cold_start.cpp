@@ -2,6 +2,7 @@
 #include "offline/cli/cold_start.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace mdhcal::offline {
 
@@ -12,6 +13,18 @@ SolutionOptions<double> thorough(const Arm<double>& arm) {
   // There is time here: restarts beside the closed form find what it misses near singularities.
   options.restarts = std::max(options.restarts, 100);
   return options;
+}
+
+// The largest difference of the joints, of turning ones modulo full turns.
+double turn_distance(const Arm<double>& arm, const double* a, const double* b) {
+  constexpr double full_turn = 6.28318530717958647692;
+  double largest = 0.0;
+  for (std::int32_t j = 0; j < arm.joint_count; ++j) {
+    const double difference = a[j] - b[j];
+    const bool slides = ((arm.prismatic_mask >> static_cast<std::uint32_t>(j)) & 1U) != 0U;
+    largest = std::max(largest, std::abs(slides ? difference : std::remainder(difference, full_turn)));
+  }
+  return largest;
 }
 
 }  // namespace
@@ -30,6 +43,20 @@ Solved solve_from(const Arm<double>& arm, const Pose<double>& base_T_flange, con
     before_m = report.position_error_m;
     before_rad = report.rotation_error_rad;
   }
+  return solved;
+}
+
+Solved solve_near(const Arm<double>& arm, const Pose<double>& base_T_flange, const Joints& seed) {
+  Solved solved = solve_from(arm, base_T_flange, seed);
+  if (solved.status == Status::ok || solved.status == Status::bad_input) return solved;
+  Solutions<double> found{};
+  if (find_solutions(arm, thorough(arm), base_T_flange, seed.data(), found) != Status::ok) return solved;
+  const double* nearest = found.q[0];
+  for (std::int32_t k = 1; k < found.count; ++k) {
+    if (turn_distance(arm, found.q[k], seed.data()) < turn_distance(arm, nearest, seed.data())) nearest = found.q[k];
+  }
+  std::copy(nearest, nearest + arm.joint_count, solved.q.begin());
+  solved.status = Status::ok;
   return solved;
 }
 

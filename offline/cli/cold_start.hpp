@@ -18,6 +18,10 @@ struct Solved {
 /// The joints that meet the pose from a seed near them: ticks of the library until one meets it, or none comes nearer.
 Solved solve_from(const Arm<double>& arm, const Pose<double>& base_T_flange, const Joints& seed);
 
+/// The same, and where that meets nothing the solution nearest to the seed, modulo full turns: a joint limit may stand between
+/// the seed and a pose that a full turn away is met.
+Solved solve_near(const Arm<double>& arm, const Pose<double>& base_T_flange, const Joints& seed);
+
 /// The solution nearest to zero, without a seed; if there is none, where ticks from zero get to, with their status.
 Solved solve_anew(const Arm<double>& arm, const Pose<double>& base_T_flange);
 

@@ -34,7 +34,7 @@ void run_inverse(const InverseArguments& arguments) {
       for (const Solved& solved : all) append(out, geometry, row.id, solved);
       if (!all.empty()) continue;
     }
-    append(out, geometry, row.id, row.seed ? solve_from(blob.arm, pose, *row.seed) : solve_anew(blob.arm, pose));
+    append(out, geometry, row.id, row.seed ? solve_near(blob.arm, pose, *row.seed) : solve_anew(blob.arm, pose));
   }
   (void)std::fwrite(out.data(), 1, out.size(), stdout);
 }
