@@ -64,7 +64,7 @@ TEST(Bootstrap, CountsWhatIsDone) {
 TEST(CrossValidation, LeavesWholeGroupsOut) {
   const Simulation s = simulated(3);
   std::vector<std::size_t> told;
-  const CrossValidation k = cross_validate(s.nominal, s.train, {}, 4, [&](std::size_t done, std::size_t total) {
+  const RepeatedCrossValidation k = cross_validate(s.nominal, s.train, {}, 4, [&](std::size_t done, std::size_t total) {
     EXPECT_EQ(total, 4U);
     told.push_back(done);
   });
@@ -79,7 +79,7 @@ TEST(CrossValidation, OneGroupAtATime) {
   Simulation s = simulated(1);
   s.train.rows.resize(24);
   s.train.groups.resize(24);
-  const CrossValidation k = cross_validate(s.nominal, s.train, {}, 0);
+  const RepeatedCrossValidation k = cross_validate(s.nominal, s.train, {}, 0);
   EXPECT_EQ(k.folds, 24U);
   EXPECT_EQ(k.after.count, 24U);
 }
