@@ -16,9 +16,9 @@ TICK = "`tick(Arm<double>, TickOptions<double>, Pose<double>, double, TickReport
 FORWARD = "`forward(Arm<double>, double, Pose<double>)`"
 
 BUDGETS = [
-    Budget("cortex-m7", "forward", ("forward", "double", None), "max", 1900, "instructions"),
+    Budget("cortex-m7", "forward", ("forward", "double", None), "max", 1260, "instructions"),
     Budget("cortex-m7", "forward with Jacobian", ("forward+jacobian", "double", None), "max", 2300, "instructions"),
-    Budget("cortex-m7", "warm tick, median", ("tick", "double", "regular"), "median", 12000, "instructions"),
+    Budget("cortex-m7", "warm tick, median", ("tick", "double", "regular"), "median", 8000, "instructions"),
     Budget("cortex-m7", "tick, hard maximum", ("tick", "double", None), "max", 95000, "instructions"),
     # Eight regular ticks.
     Budget("cortex-m7", "tick anywhere out of reach", ("tick", "double", "far"), "max", 88000, "instructions"),
