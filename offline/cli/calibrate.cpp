@@ -8,6 +8,7 @@
 #include "offline/base/progress.hpp"
 #include "offline/base/text_table.hpp"
 #include "offline/cli/calibration_arguments.hpp"
+#include "offline/cli/import_arguments.hpp"
 #include "offline/cli/messages.hpp"
 #include "offline/cli/robot_argument.hpp"
 #include "offline/output/result_files.hpp"
@@ -20,6 +21,7 @@ namespace {
 struct CalibrateArguments : CalibrationArguments {
   std::size_t resamples = 0;
   std::optional<std::size_t> folds;
+  ImportArguments import;  // --tracker and what belongs to it
 };
 
 Assessment assess(const CalibrateArguments& arguments, const CalibrationOptions& options, const Robot& robot,
@@ -54,10 +56,14 @@ void tell(const Calibration& c, const Assessment& assessment) {
 }
 
 void run_calibrate(const CalibrateArguments& arguments) {
+  if (arguments.measurements.empty() == arguments.import.exports.empty()) {
+    throw InputError("Found neither MEASUREMENTS nor --tracker, or both; expected one of them.");
+  }
   const CalibrationOptions options = calibration_options(arguments);
   const std::string date = blob_date(arguments.date);
   const Robot robot = robot_of_argument(arguments.robot);
-  const Dataset data = read_dataset(arguments.measurements, robot);
+  const Dataset data = arguments.import.exports.empty() ? read_dataset(arguments.measurements, robot)
+                                                        : read_imported(arguments.import, robot);
   Dataset test;
   if (!arguments.test.empty()) test = read_dataset(arguments.test, robot);
   OutputFolder folder(arguments.directory, result_names);
@@ -84,6 +90,10 @@ void add_calibrate(CLI::App& app) {
   auto arguments = std::make_shared<CalibrateArguments>();
   CLI::App* command = app.add_subcommand("calibrate", "Identify a robot's geometry from measurements");
   add_calibration_arguments(*command, *arguments);
+  command->get_option("MEASUREMENTS")->required(false);
+  command->add_option("--tracker", arguments->import.exports, "Files of the tracker in place of MEASUREMENTS, read as `mdhcal import` does");
+  command->add_option("--rotation", arguments->import.rotation, "Convention of a rotation in three angles, or none to leave it out");
+  add_import_options(*command, arguments->import);
   CalibrationOptions& options = arguments->options;
   command->add_option("--method", options.method, "rpim (regularized), or one of those it is compared with")
       ->check(CLI::IsMember({"rpim", "rpim-train", "nc", "lsm", "gd", "gn", "lm", "ekf"}))

@@ -26,6 +26,7 @@ void add_batch(CLI::App& app);
 void add_simulate(CLI::App& app);
 void add_convert(CLI::App& app);
 void add_robots(CLI::App& app);
+void add_import(CLI::App& app);
 
 /// All of them, in the order in which `mdhcal --help` lists them.
 inline void add_commands(CLI::App& app) {
@@ -47,6 +48,7 @@ inline void add_commands(CLI::App& app) {
   add_simulate(app);
   add_convert(app);
   add_robots(app);
+  add_import(app);
 }
 
 }  // namespace mdhcal::offline

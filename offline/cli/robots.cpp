@@ -37,7 +37,7 @@ void add_robots(CLI::App& app) {
   command->footer(
       "reach_mm: the largest distance of the flange from the axis of joint 1, within the limits.\n"
       "sources: how many independent sources agree on the numbers; the file names them, and what is not confirmed.\n"
-      "ROBOT on every command may be such a name. The maker may be left out, and words that only one name has are enough.\n"
+      "ROBOT on calibrate, compare, import, pack, plan and simulate may be such a name. The maker may be left out, and words that only one name has are enough.\n"
       "Example:\n  mdhcal robots ur5e > my.toml");
   command->callback([name] { name->empty() ? print_list() : print_file(*name); });
 }

@@ -33,6 +33,9 @@ TEST(Replay, Blob) { replay("blob", blob_target, 500); }
 TEST(Replay, Loader) { replay("blob", loader_target, 100); }
 TEST(Replay, Robot) { replay("robot", robot_target, 200); }
 TEST(Replay, Dataset) { replay("dataset", dataset_target, 200); }
+TEST(Replay, Source) { replay("source", source_target, 100); }
+TEST(Replay, Program) { replay("program", program_target, 200); }
+TEST(Replay, Profile) { replay("profile", profile_target, 100); }
 
 }  // namespace
 }  // namespace mdhcal::fuzz

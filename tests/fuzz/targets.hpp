@@ -21,4 +21,13 @@ void robot_target(const std::uint8_t* data, std::size_t size);
 /// parse_dataset() for a six-joint robot.
 void dataset_target(const std::uint8_t* data, std::size_t size);
 
+/// read_source() of a tracker's export or a controller's log for a six-joint robot, then join() with itself.
+void source_target(const std::uint8_t* data, std::size_t size);
+
+/// read_program() in every language: each number's bytes are the number.
+void program_target(const std::uint8_t* data, std::size_t size);
+
+/// parse_profile(), then a table read by it.
+void profile_target(const std::uint8_t* data, std::size_t size);
+
 }  // namespace mdhcal::fuzz

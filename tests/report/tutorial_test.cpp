@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Runs every command of docs/tutorial.md in order, and the one of the README, and compares what they print.
+// Runs every command of docs/tutorial.md and docs/own-robot.md in order, and the one of the README, and compares what they print.
 #include <filesystem>
 #include <sstream>
 #include <vector>
@@ -34,9 +34,9 @@ std::vector<Step> steps_of(const std::string& page) {
   return steps;
 }
 
-TEST(Tutorial, EveryCommandPrintsWhatThePageSays) {
-  const auto steps = steps_of(read_bytes(std::string(MDHCAL_SOURCE_DIR) + "/docs/tutorial.md"));
-  ASSERT_GT(steps.size(), 15u);
+void expect_what_the_page_says(const std::string& page, std::size_t least_steps) {
+  const auto steps = steps_of(read_bytes(std::string(MDHCAL_SOURCE_DIR) + "/docs/" + page));
+  ASSERT_GT(steps.size(), least_steps);
   const TemporaryFolder folder;
   fs::create_directory_symlink(std::string(MDHCAL_SOURCE_DIR) + "/offline", folder / "offline");
   fs::create_directory(folder / "bin");
@@ -48,6 +48,9 @@ TEST(Tutorial, EveryCommandPrintsWhatThePageSays) {
     EXPECT_EQ(run.out, step.output) << step.command;
   }
 }
+
+TEST(Tutorial, EveryCommandPrintsWhatThePageSays) { expect_what_the_page_says("tutorial.md", 15); }
+TEST(Tutorial, OwnRobotAndTrackerPrintWhatThePageSays) { expect_what_the_page_says("own-robot.md", 8); }
 
 // cmake/demo.sh prints the command, what it prints, and the files.
 TEST(Readme, ShowsWhatTheDemoPrints) {
