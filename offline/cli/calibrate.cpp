@@ -92,7 +92,9 @@ void add_calibrate(CLI::App& app) {
   add_calibration_arguments(*command, *arguments);
   command->get_option("MEASUREMENTS")->required(false);
   command->add_option("--tracker", arguments->import.exports, "Files of the tracker in place of MEASUREMENTS, read as `mdhcal import` does");
-  command->add_option("--rotation", arguments->import.rotation, "Convention of a rotation in three angles, or none to leave it out");
+  // One option for both kinds of measurements, wherever it is added.
+  CLI::Option* rotation = command->get_option_no_throw("--rotation");
+  if (rotation == nullptr) rotation = command->add_option("--rotation", arguments->import.rotation, "Convention of a rotation in three angles, or none to leave it out");
   add_import_options(*command, arguments->import);
   CalibrationOptions& options = arguments->options;
   command->add_option("--method", options.method, "rpim (regularized), or one of those it is compared with")
@@ -109,7 +111,10 @@ void add_calibrate(CLI::App& app) {
   command->add_option("--date", arguments->date, "Date in the blob, YYYY-MM-DD");
   command->footer(
       "Example:\n  mdhcal calibrate robot.toml nine_poses.csv --test eighteen_poses.csv --base given --tool given -o result");
-  command->callback([arguments] { run_calibrate(*arguments); });
+  command->callback([arguments, rotation] {
+    if (rotation->count() > 0) arguments->import.rotation = rotation->as<std::string>();
+    run_calibrate(*arguments);
+  });
 }
 
 }  // namespace mdhcal::offline
