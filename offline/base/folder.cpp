@@ -3,14 +3,16 @@
 
 #include <algorithm>
 #include <cerrno>
-#include <csignal>
+#include <charconv>
 #include <cstdio>
 #include <cstring>
 
 #include <fcntl.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include "offline/base/error.hpp"
+#include "offline/base/inputs.hpp"
 
 namespace mdhcal::offline {
 
@@ -18,65 +20,54 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr std::string_view mark = ".mdhcal-partial-";
-
 [[noreturn]] void fail(const fs::path& path, const std::string& what, int error) {
   throw InputError(path.string() + ": " + what + ": " + std::strerror(error) + '.');
 }
-
-fs::path partial_name(const fs::path& path) {
-  return path.parent_path() / ('.' + path.filename().string() + std::string(mark) + std::to_string(getpid()));
-}
-
-// A descriptor that closes itself.
-class Descriptor {
- public:
-  Descriptor(const fs::path& path, int flags) : fd_(open(path.c_str(), flags | O_CLOEXEC, 0666)) {}
-  ~Descriptor() {
-    if (fd_ >= 0) close(fd_);
-  }
-  Descriptor(const Descriptor&) = delete;
-  Descriptor& operator=(const Descriptor&) = delete;
-  int get() const { return fd_; }
-
- private:
-  int fd_;
-};
 
 // True once what was written is on the disk; devices and file systems that know no such thing count as well.
 bool flushed(int fd) { return fsync(fd) == 0 || errno == EINVAL || errno == EROFS || errno == ENOTSUP; }
 
 // 0, or the error number.
-int write_plain(const fs::path& path, std::string_view bytes) {
-  const Descriptor file(path, O_WRONLY | O_CREAT | O_TRUNC);
-  bool good = file.get() >= 0;
+int write_all(int fd, std::string_view bytes) {
+  bool good = fd >= 0;
   while (good && !bytes.empty()) {
-    const ssize_t count = write(file.get(), bytes.data(), bytes.size());
+    const ssize_t count = write(fd, bytes.data(), bytes.size());
     if (count > 0) bytes.remove_prefix(static_cast<std::size_t>(count));
     good = count > 0 || (count < 0 && errno == EINTR);
   }
   // Before any rename: a power cut after it must not find an empty file under the final name.
-  return good && flushed(file.get()) ? 0 : errno;
+  return good && flushed(fd) ? 0 : errno;
+}
+
+// What is written as it is, without a rename: a stream that this process was given (under its name /dev/stdout, say, which
+// must not be replaced), a device or a pipe. -1: none of these.
+Descriptor stream_of(const fs::path& path) {
+  const std::string name = path.string();
+  int given = name == "/dev/stdout" ? STDOUT_FILENO : name == "/dev/stderr" ? STDERR_FILENO : -1;
+  for (const std::string_view folder : {"/dev/fd/", "/proc/self/fd/"}) {
+    if (!name.starts_with(folder)) continue;
+    const char* end = name.data() + name.size();
+    if (std::from_chars(name.data() + folder.size(), end, given).ptr != end) given = -1;
+  }
+  if (given >= 0) {
+    const int copy = fcntl(given, F_DUPFD_CLOEXEC, 0);
+    if (copy < 0) fail(path, "cannot be written", errno);
+    return Descriptor(copy);
+  }
+  const auto is_stream = [](mode_t mode) { return S_ISCHR(mode) || S_ISFIFO(mode); };
+  struct stat found = {};
+  if (stat(path.c_str(), &found) != 0 || !is_stream(found.st_mode)) return Descriptor();
+  Descriptor open(::open(path.c_str(), O_WRONLY | O_CLOEXEC));
+  // It may be another file by now.
+  if (open.get() >= 0 && (fstat(open.get(), &found) != 0 || !is_stream(found.st_mode))) return Descriptor();
+  if (open.get() < 0) fail(path, "cannot be written", errno);
+  return open;
 }
 
 // The names in a folder, on the disk. A folder that may be written but not read is left to the file system.
 void flush_folder(const fs::path& path) {
-  const Descriptor folder(path.empty() ? "." : path, O_RDONLY | O_DIRECTORY);
+  const Descriptor folder(open(path.empty() ? "." : path.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
   if (folder.get() >= 0 && !flushed(folder.get())) fail(path, "cannot be written", errno);
-}
-
-// What killed runs for the same destination left: the mark ends in the number of a process that is gone.
-void remove_leftovers(const fs::path& destination) {
-  const std::string prefix = '.' + destination.filename().string() + std::string(mark);
-  std::error_code ignored;
-  for (const auto& entry : fs::directory_iterator(fs::absolute(destination).parent_path(), ignored)) {
-    const std::string name = entry.path().filename().string();
-    if (!name.starts_with(prefix)) continue;
-    const std::string digits = name.substr(prefix.size());
-    if (digits.empty() || digits.size() > 9 || digits.find_first_not_of("0123456789") != std::string::npos) continue;
-    const int process = std::stoi(digits);
-    if (process != getpid() && kill(process, 0) != 0 && errno == ESRCH) fs::remove_all(entry.path(), ignored);
-  }
 }
 
 // True if there is an earlier result, false if there is nothing or an empty folder.
@@ -98,6 +89,7 @@ bool earlier_result(const fs::path& destination, const std::vector<std::string>&
                        "\", so it is not an earlier result of this command; expected such a result, an empty folder "
                        "or a name that is free.");
     }
+    refuse_input(entry.path(), destination);
     any = true;
   }
   return any;
@@ -106,21 +98,30 @@ bool earlier_result(const fs::path& destination, const std::vector<std::string>&
 }  // namespace
 
 void write_file(const fs::path& path, std::string_view bytes) {
-  std::error_code missing;
-  const fs::file_type type = fs::status(path, missing).type();
-  if (type == fs::file_type::character || type == fs::file_type::fifo) {
-    if (const int error = write_plain(path, bytes)) fail(path, "cannot be written", error);
+  refuse_input(path, path);
+  if (const Descriptor stream = stream_of(path); stream.get() >= 0) {
+    if (const int error = write_all(stream.get(), bytes)) fail(path, "cannot be written", error);
     return;
   }
-  remove_leftovers(path);
-  const fs::path partial = partial_name(path);
-  int error = write_plain(partial, bytes);
-  if (error == 0 && std::rename(partial.c_str(), path.c_str()) != 0) error = errno;
-  if (error != 0) {
-    std::error_code ignored;
-    fs::remove(partial, ignored);
-    fail(path, "cannot be written", error);
+  Partial partial(path, Partial::Kind::file);
+  int error = write_all(partial.descriptor(), bytes);
+  if (error == 0 && std::rename(partial.path().c_str(), path.c_str()) != 0) error = errno;
+  if (error != 0) fail(path, "cannot be written", error);
+  partial.keep();
+  flush_folder(path.parent_path());
+}
+
+void write_new_file(const fs::path& path, std::string_view bytes, Access access) {
+  Partial partial(path, Partial::Kind::file, access == Access::owner ? 0700U : 0777U);
+  int error = write_all(partial.descriptor(), bytes);
+  // A second name, since a rename takes the place of what is there; the first one goes with `partial`.
+  if (error == 0 && link(partial.path().c_str(), path.c_str()) != 0) error = errno;
+  // A file system without links: it refuses to replace in another way, or not at all.
+  if (error == EPERM || error == ENOTSUP || error == ENOSYS) {
+    error = renameat2(AT_FDCWD, partial.path().c_str(), AT_FDCWD, path.c_str(), RENAME_NOREPLACE) == 0 ? 0 : errno;
+    if (error == 0) partial.keep();
   }
+  if (error != 0) fail(path, "cannot be written", error);
   flush_folder(path.parent_path());
 }
 
@@ -136,40 +137,32 @@ OutputFolder::OutputFolder(fs::path destination, std::vector<std::string> names)
   if (!fs::create_directories(destination_.parent_path(), error) && error) {
     fail(destination_.parent_path(), "cannot be made", error.value());
   }
-  remove_leftovers(destination_);
-  staging_ = partial_name(destination_);
-  fs::remove_all(staging_, error);
-  if (!fs::create_directory(staging_, error)) fail(destination_, "cannot be made", error.value());
-}
-
-OutputFolder::~OutputFolder() {
-  std::error_code ignored;
-  if (!committed_) fs::remove_all(staging_, ignored);
+  staging_.emplace(destination_, Partial::Kind::folder);
 }
 
 void OutputFolder::write(const std::string& name, std::string_view bytes) {
   if (std::find(names_.begin(), names_.end(), name) == names_.end()) {
     throw std::logic_error(name + " is not a file of this result");
   }
-  if (const int error = write_plain(staging_ / name, bytes)) fail(destination_ / name, "cannot be written", error);
+  const Descriptor file(openat(staging_->descriptor(), name.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0666));
+  if (const int error = write_all(file.get(), bytes)) fail(destination_ / name, "cannot be written", error);
 }
 
 void OutputFolder::commit() {
-  flush_folder(staging_);
+  const fs::path& staging = staging_->path();
+  flush_folder(staging);
   if (earlier_result(destination_, names_)) {
-    if (renameat2(AT_FDCWD, staging_.c_str(), AT_FDCWD, destination_.c_str(), RENAME_EXCHANGE) == 0) {
-      committed_ = true;
+    if (renameat2(AT_FDCWD, staging.c_str(), AT_FDCWD, destination_.c_str(), RENAME_EXCHANGE) == 0) {
       flush_folder(destination_.parent_path());
-      std::error_code ignored;
-      fs::remove_all(staging_, ignored);  // the earlier result now has this name
+      staging_.reset();  // removes the earlier result, which now has this name
       return;
     }
     // A file system that cannot exchange: there is a moment without any result, never one with half of it.
     if (errno != EINVAL && errno != ENOSYS) fail(destination_, "cannot be exchanged", errno);
     fs::remove_all(destination_);
   }
-  if (std::rename(staging_.c_str(), destination_.c_str()) != 0) fail(destination_, "cannot be put in place", errno);
-  committed_ = true;
+  if (std::rename(staging.c_str(), destination_.c_str()) != 0) fail(destination_, "cannot be put in place", errno);
+  staging_->keep();
   flush_folder(destination_.parent_path());
 }
 

@@ -1,17 +1,21 @@
 // SPDX-License-Identifier: MIT
 #include "offline/base/read_file.hpp"
 
+#include <algorithm>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
 #include <memory>
 
+#include <sys/stat.h>
+
 #include "offline/base/error.hpp"
+#include "offline/base/inputs.hpp"
 
 namespace mdhcal::offline {
 
-std::string read_file(const std::string& path, const std::string& expected) {
+std::string read_file(const std::string& path, const std::string& expected, std::size_t most_bytes) {
   std::error_code ignored;
   if (std::filesystem::is_directory(path, ignored)) {
     throw InputError(path, 0, 0, "Found a folder; expected " + expected + ".");
@@ -22,15 +26,22 @@ std::string read_file(const std::string& path, const std::string& expected) {
     throw InputError(path, 0, 0,
                      std::string("The file cannot be read: ") + std::strerror(errno) + "; expected " + expected + ".");
   }
+  struct stat opened = {};
   std::string bytes;
-  const auto size = std::filesystem::file_size(path, ignored);
-  if (!ignored) bytes.reserve(static_cast<std::size_t>(size) + 1);
+  if (fstat(fileno(file.get()), &opened) == 0) {
+    note_input(opened, path);
+    // One byte more, so that the end is met without another round.
+    if (S_ISREG(opened.st_mode)) bytes.reserve(std::min(static_cast<std::size_t>(opened.st_size), most_bytes) + 1);
+  }
   std::size_t used = 0;
   do {
     // Files under /proc and pipes do not tell their size.
     bytes.resize(bytes.capacity() > used + 4096 ? bytes.capacity() : 2 * used + 65536);
     const std::size_t got = std::fread(bytes.data() + used, 1, bytes.size() - used, file.get());
     used += got;
+    if (used > most_bytes) {
+      throw InputError(path, 0, 0, "Found more than " + std::to_string(most_bytes) + " bytes; expected " + expected + '.');
+    }
     if (got == 0) break;
   } while (true);
   bytes.resize(used);

@@ -88,7 +88,7 @@ std::string compare_json(const std::vector<Line>& lines, const std::vector<Publi
     json["published"].push_back(
         {{"method", p.method}, {"max_mm", p.max_mm}, {"mean_mm", p.mean_mm}, {"sd_mm", p.sd_mm}});
   }
-  return json.dump(2) + "\n";
+  return json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
 }
 
 std::string report_of(const Calibration& regularized, const std::vector<Line>& lines,

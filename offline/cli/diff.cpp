@@ -3,6 +3,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "offline/base/text.hpp"
 #include "offline/cli/commands.hpp"
 #include "offline/output/blob_describe.hpp"
 
@@ -20,7 +21,7 @@ void run_diff(const DiffArguments& arguments) {
       difference_json(read_blob_file(arguments.a).model, read_blob_file(arguments.b).model);
   const std::string text = arguments.json
                                ? difference.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + '\n'
-                               : difference_text(difference);
+                               : printable(difference_text(difference));
   (void)std::fwrite(text.data(), 1, text.size(), stdout);
 }
 

@@ -5,6 +5,8 @@
 
 #include <cstdlib>
 
+#include "offline/base/text.hpp"
+
 namespace mdhcal::offline {
 
 namespace {
@@ -23,18 +25,18 @@ void set_verbosity(Verbosity verbosity) { chosen = verbosity; }
 Verbosity verbosity() { return chosen; }
 
 void inform(const std::string& message) {
-  if (chosen != Verbosity::quiet) line(message);
+  if (chosen != Verbosity::quiet) line(printable(message));
 }
 
 void detail(const std::string& message) {
-  if (chosen == Verbosity::verbose) line(message);
+  if (chosen == Verbosity::verbose) line(printable(message));
 }
 
 void warn(const std::string& message) {
-  if (chosen != Verbosity::quiet) line(coloured("warning:", Colour::yellow, stderr) + ' ' + message);
+  if (chosen != Verbosity::quiet) line(coloured("warning:", Colour::yellow, stderr) + ' ' + printable(message));
 }
 
-void complain(const std::string& message) { line(coloured("mdhcal:", Colour::red, stderr) + ' ' + message); }
+void complain(const std::string& message) { line(coloured("mdhcal:", Colour::red, stderr) + ' ' + printable(message)); }
 
 bool takes_colour(std::FILE* stream) {
   const char* refused = std::getenv("NO_COLOR");

@@ -7,6 +7,7 @@
 
 #include "offline/assess/monitor.hpp"
 #include "offline/base/error.hpp"
+#include "offline/base/text.hpp"
 #include "offline/cli/blob_command.hpp"
 #include "offline/cli/blob_registration.hpp"
 #include "offline/cli/commands.hpp"
@@ -64,9 +65,9 @@ void run_monitor(const MonitorArguments& arguments) {
     json["shift_mm"] = result.shift_mm;
     json["turn_deg"] = result.turn_deg;
     json["sentence"] = result.sentence;
-    std::fputs((json.dump(2) + '\n').c_str(), stdout);
+    std::fputs((json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + '\n').c_str(), stdout);
   } else {
-    std::printf("%s\n", result.sentence.c_str());
+    std::printf("%s\n", printable(result.sentence).c_str());
   }
   std::fflush(stdout);
   if (result.condition != Condition::good) throw Refusal("The check series does not hold the accuracy of the calibration.");

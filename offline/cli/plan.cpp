@@ -95,7 +95,7 @@ void print_json(const Plan& plan) {
                                   {"prior_sd" + unit, p.prior_sd * factor},
                                   {"expected_sd" + unit, p.expected_sd * factor}});
   }
-  std::printf("%s\n", json.dump(2).c_str());
+  std::printf("%s\n", json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace).c_str());
 }
 
 void print_text(const Plan& plan) {

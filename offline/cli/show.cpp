@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "offline/base/error.hpp"
+#include "offline/base/text.hpp"
 #include "offline/cli/commands.hpp"
 #include "offline/output/blob_describe.hpp"
 #include "offline/output/sign.hpp"
@@ -19,11 +20,11 @@ struct ShowArguments {
 
 void run_show(const ShowArguments& arguments) {
   const BlobFile file = read_blob_file(arguments.blob);
-  const bool verifies = arguments.key.empty() || signature_verifies(file.bytes, read_key(arguments.key));
+  const bool verifies = arguments.key.empty() || signature_verifies(file.bytes, read_public_key(arguments.key));
   const nlohmann::ordered_json blob = describe_json(file);
   // A name may be any bytes that the decoder accepts; JSON is UTF-8.
   const std::string text = arguments.json ? blob.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + '\n'
-                                          : describe_text(blob);
+                                          : printable(describe_text(blob));
   (void)std::fwrite(text.data(), 1, text.size(), stdout);
   if (!verifies) throw Refusal(arguments.blob + ": the signature does not verify under " + arguments.key + ".");
 }

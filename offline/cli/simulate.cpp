@@ -40,7 +40,7 @@ std::string truth_json(const SimulateArguments& arguments, const Simulation& sim
     const Measurement& row = simulation.train.rows[index];
     json["outliers"].push_back(row_name(simulation.train, row));
   }
-  return json.dump(2) + '\n';
+  return json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + '\n';
 }
 
 void run_simulate(SimulateArguments arguments) {

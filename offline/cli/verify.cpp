@@ -9,6 +9,7 @@
 
 #include "offline/base/error.hpp"
 #include "offline/base/statistics.hpp"
+#include "offline/base/text.hpp"
 #include "offline/cli/acceptance.hpp"
 #include "offline/cli/blob_command.hpp"
 #include "offline/cli/blob_registration.hpp"
@@ -46,7 +47,7 @@ nlohmann::ordered_json figures_json(const Statistics& s) {
 }
 
 void print_line(const std::string& name, const Statistics& s) {
-  std::printf("%-16s %7zu %9.4f %9.4f %9.4f %9.4f %9.4f %9.4f\n", name.c_str(), s.count, s.mean, s.median, s.max, s.sd,
+  std::printf("%-16s %7zu %9.4f %9.4f %9.4f %9.4f %9.4f %9.4f\n", printable(name).c_str(), s.count, s.mean, s.median, s.max, s.sd,
               s.rms, s.p95);
 }
 
@@ -93,7 +94,7 @@ void run_verify(const VerifyArguments& arguments) {
     json["tool"] = arguments.refit_tool ? "refitted" : "blob";
     json.update(acceptance.json);
     json["passed"] = broken.empty();
-    std::fputs((json.dump(2) + '\n').c_str(), stdout);
+    std::fputs((json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + '\n').c_str(), stdout);
   } else {
     std::printf("%-16s %7s %9s %9s %9s %9s %9s %9s\n", "error, mm", "count", "mean", "median", "max", "sd", "rms", "p95");
     print_line("all", total);

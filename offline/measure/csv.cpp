@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "offline/base/error.hpp"
+#include "offline/base/text.hpp"
 
 namespace mdhcal::offline {
 
@@ -51,22 +52,18 @@ char separator_of(std::string_view header) {
 }
 
 std::string shown(std::string_view text) {
-  std::string out = "\"";
-  for (const char c : text.substr(0, 40)) out += static_cast<unsigned char>(c) < 0x20 ? '?' : c;
-  return out + (text.size() > 40 ? "...\"" : "\"");
+  return '"' + std::string(begin_of(text, 40)) + (text.size() > 40 ? "...\"" : "\"");
 }
 
 }  // namespace
 
 Csv::Csv(std::string_view text, std::string path, const std::string& expected) : text_(text), path_(std::move(path)) {
-  if (text_.starts_with("\xFF\xFE") || text_.starts_with("\xFE\xFF")) {
-    throw InputError(path_, 1, 1, "Found text in UTF-16; expected " + expected + " in UTF-8.");
-  }
   const std::size_t nul = text_.find('\0');
-  if (nul != std::string_view::npos) {
+  if (nul != std::string_view::npos && !text_.starts_with("\xFF\xFE") && !text_.starts_with("\xFE\xFF")) {
     const long line = 1 + std::count(text_.begin(), text_.begin() + static_cast<std::ptrdiff_t>(nul), '\n');
     throw InputError(path_, line, 1, "Found a zero byte; expected " + expected + " (CSV text).");
   }
+  require_text(text_, path_, expected);
   if (text_.starts_with("\xEF\xBB\xBF")) at_ = 3;
   line_start_ = at_;
   // The separator is only known once the header's line is.
@@ -84,9 +81,14 @@ Csv::Csv(std::string_view text, std::string path, const std::string& expected) :
   header_line_ = line_;
   // A separator at the end of the header names no column.
   while (fields_.size() > 1 && fields_.back().text.empty()) fields_.pop_back();
+  // Where the line of each field begins is carried along: to look back from every field would be quadratic.
+  std::size_t walked = line_start_, begin = line_start_;
   for (const Field& field : fields_) {
+    for (; walked < field.at; ++walked) {
+      if (text_[walked] == '\n') begin = walked + 1;
+    }
     header_.emplace_back(field.text);
-    header_columns_.push_back(column_at(field.at));
+    header_columns_.push_back(static_cast<long>(field.at - begin) + 1);
     names_.push_back(plain_name(field.text));
   }
 }

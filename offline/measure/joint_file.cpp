@@ -5,6 +5,7 @@
 
 #include "offline/base/error.hpp"
 #include "offline/base/read_file.hpp"
+#include "offline/base/text.hpp"
 #include "offline/measure/columns.hpp"
 #include "offline/measure/rotation_columns.hpp"
 #include "offline/robot/rotation.hpp"
@@ -21,6 +22,16 @@ Joints joints_of(const Csv& csv, const std::vector<Column>& columns) {
   Joints q{};
   for (std::size_t j = 0; j < columns.size(); ++j) q[j] = columns[j].read(csv, max_reading);
   return q;
+}
+
+// What a spreadsheet would compute rather than show. A plain number is shown as it is.
+bool is_formula(const std::string& text) {
+  if (text.empty() || std::string_view("=+-@").find(text[0]) == std::string_view::npos) return false;
+  double number = 0;
+  const char* first = text.data() + (text[0] == '+' ? 1 : 0);
+  const char* end = text.data() + text.size();
+  const bool signs = text.size() > 1 && text[0] == '+' && (text[1] == '-' || text[1] == '+');
+  return signs || std::from_chars(first, end, number).ptr != end;
 }
 
 template <class Row>
@@ -88,9 +99,11 @@ std::string joint_fields(const Geometry& geometry, const double* q) {
 }
 
 std::string csv_field(const std::string& text) {
-  if (text.find_first_of(",;\t\"\r\n#") == std::string::npos) return text;
+  std::string shown = printable(text);
+  if (is_formula(shown)) shown.insert(0, 1, '\'');
+  if (shown.find_first_of(",;\t\"\n#") == std::string::npos) return shown;
   std::string field = "\"";
-  for (const char c : text) {
+  for (const char c : shown) {
     if (c == '"') field += '"';
     field += c;
   }

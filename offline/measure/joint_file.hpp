@@ -38,7 +38,8 @@ Table<PoseRow> read_pose_file(const std::string& path, const Geometry& geometry)
 std::string joint_header(const Geometry& geometry, const std::string& prefix);
 /// The readings in the header's units, each behind a comma.
 std::string joint_fields(const Geometry& geometry, const double* q);
-/// A field of a table: in quotes where it needs them.
+/// A field of a table: in quotes where it needs them, with an apostrophe before what a spreadsheet would compute (it begins with =,
+/// +, - or @ and is no number), and with control characters made visible (printable()).
 std::string csv_field(const std::string& text);
 /// 17 significant digits.
 std::string csv_number(double value);

@@ -206,7 +206,7 @@ std::string result_json(const Calibration& c, const Assessment& assessment) {
   json["decisions"] = c.decisions;
   json["notes"] = c.notes;
   json["details"] = c.details;
-  return json.dump(2) + "\n";
+  return json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
 }
 
 }  // namespace mdhcal::offline

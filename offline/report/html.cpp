@@ -4,6 +4,8 @@
 #include <cmath>
 #include <cstdio>
 
+#include "offline/base/text.hpp"
+
 namespace mdhcal::offline {
 
 namespace {
@@ -37,7 +39,7 @@ code { font-size: 8.5pt; overflow-wrap: anywhere; }
 
 std::string escaped(const std::string& text) {
   std::string out;
-  for (const char c : text) {
+  for (const char c : printable(text)) {
     switch (c) {
       case '&': out += "&amp;"; break;
       case '<': out += "&lt;"; break;

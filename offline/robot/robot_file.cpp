@@ -6,6 +6,7 @@
 
 #include "offline/base/error.hpp"
 #include "offline/base/read_file.hpp"
+#include "offline/base/text.hpp"
 #include "offline/robot/convention.hpp"
 #include "offline/robot/robot.hpp"
 #include "offline/robot/rotation.hpp"
@@ -63,10 +64,8 @@ class Reader {
       fail(node->source(), named(key) + "a text of " + std::to_string(text.size()) + " bytes; expected at most " +
                                std::to_string(most_bytes) + ".");
     }
-    for (const char c : text) {
-      if (static_cast<unsigned char>(c) < 0x20 || c == 0x7F) {
-        fail(node->source(), named(key) + "a control character; expected printable text.");
-      }
+    if (printable(text) != text || text.find_first_of("\t\n") != std::string::npos) {
+      fail(node->source(), named(key) + "a control character; expected printable text.");
     }
     return text;
   }
@@ -392,7 +391,7 @@ Robot Reader::read() {
   robot_.path = path_;
   std::string stem = path_.substr(path_.find_last_of('/') + 1);
   stem = stem.substr(0, stem.find_last_of('.'));
-  robot_.name = text_of(root_, "name", stem.substr(0, 63), 63);
+  robot_.name = text_of(root_, "name", std::string(begin_of(printable(stem), 63)), 63);
   robot_.serial = text_of(root_, "serial", "", 31);
   standard_ = choice(root_, "convention", {"modified", "standard"}) == 1;
   robot_.length_in_mm = choice(root_, "length_unit", {"mm", "m"}) == 0;

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "offline/base/error.hpp"
+#include "offline/base/text.hpp"
 
 namespace mdhcal::offline {
 
@@ -90,6 +91,7 @@ toml::table parse_toml(const std::string& text, const std::string& path) {
     throw InputError(path, 1 + std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(nul), '\n'), 1,
                      "Found a zero byte; expected a robot file (TOML text).");
   }
+  require_text(text, path, "a robot file (TOML)");
   refuse_stray_characters(text, path);
   try {
     return toml::parse(text, path);
