@@ -46,6 +46,7 @@ std::uint64_t address_of(const ExportArguments& arguments) {
 
 std::vector<std::uint8_t> image_of(const ExportArguments& arguments) {
   const BlobFile file = read_blob_file(arguments.blob);
+  require_loadable(file, arguments.blob);
   warn_of_acceptance(file);
   const Blob& blob = file.bytes;
   std::vector<std::uint8_t> image;

@@ -1,53 +1,53 @@
 // SPDX-License-Identifier: MIT
-#include <cerrno>
-#include <cstring>
-#include <fcntl.h>
 #include <filesystem>
 #include <memory>
-#include <unistd.h>
 
 #include "offline/base/error.hpp"
 #include "offline/base/folder.hpp"
 #include "offline/cli/commands.hpp"
+#include "offline/cli/messages.hpp"
 #include "offline/output/sign.hpp"
 
 namespace mdhcal::offline {
 
 namespace {
 
-// Readable by its owner only from the first moment, and never over an existing file: a lost key signs no more blobs.
-void write_secret(const std::string& path, const std::string& text) {
-  const int file = open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL, S_IRUSR | S_IWUSR);
-  if (file < 0) {
-    throw InputError(path, 0, 0, std::string("The secret key cannot be written (") + std::strerror(errno) +
-                                     "), expected a name that is not taken.");
-  }
-  const bool written = write(file, text.data(), text.size()) == static_cast<ssize_t>(text.size());
-  if (close(file) != 0 || !written) {
-    unlink(path.c_str());
-    throw InputError(path, 0, 0, "The secret key cannot be written.");
-  }
+struct KeygenArguments {
+  std::string output, from;
+};
+
+void refuse_taken(const std::string& path, const std::string& way_on) {
+  std::error_code ignored;
+  if (!std::filesystem::exists(std::filesystem::symlink_status(path, ignored))) return;
+  throw InputError(path, 0, 0, "The key is already there; expected a name that is not taken" + way_on + '.');
 }
 
-void run_keygen(const std::string& output) {
-  const std::string secret_path = output + ".key";
-  const std::string public_path = output + ".pub";
-  if (std::filesystem::exists(public_path)) {
-    throw InputError(public_path, 0, 0, "The public key is already there, expected a name that is not taken.");
+void run_keygen(const KeygenArguments& arguments) {
+  const std::string secret_path = arguments.output + ".key";
+  const std::string public_path = arguments.output + ".pub";
+  refuse_taken(public_path, "");
+  KeyPair key;
+  if (arguments.from.empty()) {
+    // A run that was stopped half way leaves the secret key alone.
+    refuse_taken(secret_path, ", or --from " + secret_path + " for its public key");
+    key = generate_key();
+    write_new_file(secret_path, key_text(key.secret), Access::owner);
+  } else {
+    key = key_of(read_secret_key(arguments.from).seed);
   }
-  const KeyPair key = generate_key();
-  write_secret(secret_path, key_text(key.secret));
-  write_file(public_path, key_text(key.public_key));
+  write_new_file(public_path, key_text(key.public_key), Access::all);
 }
 
 }  // namespace
 
 void add_keygen(CLI::App& app) {
-  auto output = std::make_shared<std::string>();
+  auto arguments = std::make_shared<KeygenArguments>();
   CLI::App* command = app.add_subcommand("keygen", "Make an Ed25519 key pair that signs blobs: NAME.key and NAME.pub");
-  command->add_option("-o,--output", *output, "NAME of the two files")->required();
-  command->footer("Example:\n  mdhcal keygen -o metrology");
-  command->callback([output] { run_keygen(*output); });
+  command->add_option("-o,--output", arguments->output, "NAME of the two files")->required();
+  command->add_option("--from", arguments->from, "A secret key that is there: write its public key NAME.pub only");
+  command->footer("Examples: mdhcal keygen -o metrology\n"
+                  "          mdhcal keygen --from metrology.key -o metrology");
+  command->callback([arguments] { run_keygen(*arguments); });
 }
 
 }  // namespace mdhcal::offline

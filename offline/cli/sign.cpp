@@ -5,6 +5,7 @@
 #include "offline/base/folder.hpp"
 #include "offline/cli/blob_command.hpp"
 #include "offline/cli/commands.hpp"
+#include "offline/cli/messages.hpp"
 #include "offline/output/blob_file.hpp"
 #include "offline/output/sign.hpp"
 
@@ -19,9 +20,18 @@ struct SignArguments {
 
 void run_sign(const SignArguments& arguments) {
   const BlobFile file = read_blob_file(arguments.blob);
+  require_loadable(file, arguments.blob);
   warn_of_acceptance(file);
+  const SecretKey key = read_secret_key(arguments.key);
+  if (key.open_to_others) {
+    warn(arguments.key + ": others than its owner may read this secret key, and can sign with it; chmod 600 " + arguments.key);
+  }
+  if (arguments.counter && *arguments.counter < file.model.security_counter) {
+    warn("The security counter goes down, from " + std::to_string(file.model.security_counter) + " to " +
+         std::to_string(*arguments.counter) + ": controllers that ask for the higher one refuse the signed blob.");
+  }
   Blob blob = file.bytes;
-  sign(blob, key_of(read_key(arguments.key)), arguments.counter);
+  sign(blob, key_of(key.seed), arguments.counter);
   write_file(arguments.output, {reinterpret_cast<const char*>(blob.data()), blob.size()});
 }
 

@@ -4,13 +4,14 @@
 #include <algorithm>
 #include <cstring>
 
+#include "mdhcal/calibrated_arm.hpp"
 #include "offline/base/error.hpp"
 #include "offline/base/read_file.hpp"
 
 namespace mdhcal::offline {
 
 BlobFile read_blob_file(const std::string& path) {
-  const std::string text_bytes = read_file(path, "a parameter blob");
+  const std::string text_bytes = read_file(path, "a parameter blob", 1U << 20U);
   BlobFile file;
   const auto* bytes = reinterpret_cast<const std::uint8_t*>(text_bytes.data());
   const Status status = decode(bytes, text_bytes.size(), DecodeOptions{}, file.model);
@@ -21,6 +22,23 @@ BlobFile read_blob_file(const std::string& path) {
   }
   std::memcpy(file.bytes.data(), bytes, file.bytes.size());
   return file;
+}
+
+void require_loadable(const BlobFile& file, const std::string& path) {
+  const auto require = [&](Status status, const char* precision) {
+    if (status == Status::ok || status == Status::self_test_tolerance) return;
+    throw InputError(path, 0, 0, std::string("A controller would refuse this blob in ") + precision + " precision: " +
+                                     status_text(status) + "; expected one that mdhcal calibrate or pack wrote.");
+  };
+  // A blob without any vectors fails the self-test of both; one with vectors of one precision is meant for that one.
+  if (file.model.double_vector_count > 0 || file.model.float_vector_count == 0) {
+    CalibratedArm<double> arm;
+    require(load(file.bytes.data(), file.bytes.size(), DecodeOptions{}, arm), "double");
+  }
+  if (file.model.float_vector_count > 0) {
+    CalibratedArm<float> arm;
+    require(load(file.bytes.data(), file.bytes.size(), DecodeOptions{}, arm), "float");
+  }
 }
 
 mdhcal::BlobContent read_blob(const std::string& path) { return read_blob_file(path).model; }

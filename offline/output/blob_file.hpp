@@ -17,6 +17,10 @@ struct BlobFile {
 /// The bytes and the model of a blob file. Throws InputError naming the file and the reason of the refusal.
 BlobFile read_blob_file(const std::string& path);
 
+/// Throws InputError, naming the file and the reason, unless the loader of the library takes the blob: what decode() asks for,
+/// an arm of its geometry, and the self-test in each precision of which the blob has vectors (in one at least).
+void require_loadable(const BlobFile& file, const std::string& path);
+
 /// The model in a blob file, decoded by lib. Throws InputError naming the file and the reason of the refusal.
 mdhcal::BlobContent read_blob(const std::string& path);
 

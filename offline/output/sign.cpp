@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <sodium.h>
 #include <stdexcept>
+#include <sys/stat.h>
 
 #include "mdhcal/crc32.hpp"
 #include "offline/base/error.hpp"
@@ -53,8 +54,10 @@ std::string key_text(const std::array<std::uint8_t, 32>& key) {
   return text + '\n';
 }
 
+namespace {
+
 std::array<std::uint8_t, 32> read_key(const std::string& path) {
-  const std::string text = read_file(path, "a key file");
+  const std::string text = read_file(path, "a key file", 4096);
   std::array<std::uint8_t, 32> key{};
   std::size_t size = 0;
   start_sodium();
@@ -64,6 +67,26 @@ std::array<std::uint8_t, 32> read_key(const std::string& path) {
     throw InputError(path, 1, 1, "This is not a key, expected one line of 64 hexadecimal digits.");
   }
   return key;
+}
+
+}  // namespace
+
+SecretKey read_secret_key(const std::string& path) {
+  if (path.ends_with(".pub")) {
+    throw InputError(path, 0, 0, "The name is that of a public key; expected the secret one, NAME.key of mdhcal keygen.");
+  }
+  SecretKey key;
+  key.seed = read_key(path);
+  struct stat file = {};
+  key.open_to_others = stat(path.c_str(), &file) == 0 && S_ISREG(file.st_mode) && (file.st_mode & (S_IRGRP | S_IROTH)) != 0;
+  return key;
+}
+
+std::array<std::uint8_t, 32> read_public_key(const std::string& path) {
+  if (path.ends_with(".key")) {
+    throw InputError(path, 0, 0, "The name is that of a secret key; expected the public one, NAME.pub of mdhcal keygen.");
+  }
+  return read_key(path);
 }
 
 void sign(Blob& blob, const KeyPair& key, const std::optional<std::uint32_t>& counter) {

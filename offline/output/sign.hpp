@@ -25,8 +25,16 @@ KeyPair key_of(const std::array<std::uint8_t, 32>& secret);
 /// 32 bytes as a key file holds them, one line of 64 hexadecimal digits.
 std::string key_text(const std::array<std::uint8_t, 32>& key);
 
-/// Reads a key file. Throws InputError if it is anything but 64 hexadecimal digits and white space.
-std::array<std::uint8_t, 32> read_key(const std::string& path);
+/// A secret key as read from a file.
+struct SecretKey {
+  std::array<std::uint8_t, 32> seed{};
+  bool open_to_others = false;  ///< somebody else than the file's owner may read it
+};
+
+/// Reads a key file. Throws InputError if it is anything but 64 hexadecimal digits and white space, or if its name ends in
+/// that of the other kind of key (.pub, .key): both are 32 bytes, and nothing else tells one from the other.
+SecretKey read_secret_key(const std::string& path);
+std::array<std::uint8_t, 32> read_public_key(const std::string& path);
 
 /// Signs a blob, in place of any signature that it has, and repairs the CRC. `counter`, if given, becomes the blob's
 /// security counter. Ed25519 is deterministic: the same blob, key and counter give the same bytes.

@@ -171,7 +171,7 @@ TEST(SignCommands, MakeAKeyAndSign) {
   struct stat status {};
   ASSERT_EQ(stat((folder / "room.key").c_str(), &status), 0);
   EXPECT_EQ(status.st_mode & 0777U, 0600U) << "the secret is its owner's only";
-  EXPECT_EQ(key_text(key_of(read_key(folder / "room.key")).public_key), read_bytes(folder / "room.pub"));
+  EXPECT_EQ(key_text(key_of(read_secret_key(folder / "room.key").seed).public_key), read_bytes(folder / "room.pub"));
 
   const std::string secret = read_bytes(folder / "room.key");
   EXPECT_EQ(run_mdhcal({"keygen", "-o", folder / "room"}).exit_code, 2) << "a key is never written over";
@@ -187,6 +187,61 @@ TEST(SignCommands, MakeAKeyAndSign) {
   for (const std::string& wrong : {secret.substr(1), secret + "0", std::string("no key"), std::string()}) {
     tests::write_bytes(folder / "wrong.key", wrong);
     EXPECT_EQ(run_mdhcal({"sign", blob, "--key", folder / "wrong.key", "-o", folder / "none.blob"}).exit_code, 2) << wrong;
+  }
+}
+
+// What was made of a run that was stopped between the two files: the public key is there for the asking.
+TEST(SignCommands, APublicKeyComesFromItsSecret) {
+  const tests::TemporaryFolder folder;
+  ASSERT_EQ(run_mdhcal({"keygen", "-o", folder / "room"}).exit_code, 0);
+  const std::string secret = read_bytes(folder / "room.key"), open = read_bytes(folder / "room.pub");
+  std::remove((folder / "room.pub").c_str());
+  const auto again = run_mdhcal({"keygen", "-o", folder / "room"});
+  EXPECT_EQ(again.exit_code, 2);
+  EXPECT_NE(again.err.find("--from"), std::string::npos) << again.err;
+  EXPECT_EQ(run_mdhcal({"keygen", "--from", folder / "room.key", "-o", folder / "room"}).exit_code, 0);
+  EXPECT_EQ(read_bytes(folder / "room.pub"), open);
+  EXPECT_EQ(read_bytes(folder / "room.key"), secret);
+  EXPECT_EQ(run_mdhcal({"keygen", "--from", folder / "room.key", "-o", folder / "room"}).exit_code, 2) << "never written over";
+  EXPECT_EQ(tests::names_in(folder.path()), (std::vector<std::string>{"room.key", "room.pub"}));
+}
+
+TEST(SignCommands, WhatIsNoGoodKeyIsSaidOrRefused) {
+  const tests::TemporaryFolder folder;
+  const std::string blob = folder / "a.blob";
+  const Blob bytes = make_blob(sample_robot(), sample_provenance());
+  tests::write_bytes(blob, {bytes.begin(), bytes.end()});
+  ASSERT_EQ(run_mdhcal({"keygen", "-o", folder / "room"}).exit_code, 0);
+  const auto run = [&](const std::string& key, const std::string& counter, const std::string& from, const std::string& to) {
+    return run_mdhcal({"sign", from, "--key", key, "--counter", counter, "-o", folder / to});
+  };
+  EXPECT_EQ(run(folder / "room.key", "7", blob, "seven.blob").err, "");
+  const auto wrong = run(folder / "room.pub", "7", blob, "none");
+  EXPECT_EQ(wrong.exit_code, 2);
+  EXPECT_NE(wrong.err.find("public key"), std::string::npos) << wrong.err;
+  EXPECT_EQ(run_mdhcal({"show", folder / "seven.blob", "--key", folder / "room.key"}).exit_code, 2);
+  const auto lower = run(folder / "room.key", "6", folder / "seven.blob", "six.blob");
+  EXPECT_EQ(lower.exit_code, 0);
+  EXPECT_NE(lower.err.find("goes down, from 7 to 6"), std::string::npos) << lower.err;
+  ASSERT_EQ(chmod((folder / "room.key").c_str(), 0644), 0);
+  EXPECT_NE(run(folder / "room.key", "7", blob, "b.blob").err.find("others than its owner"), std::string::npos);
+}
+
+// A blob whose bytes are in order and whose self-test fails: no controller would take it.
+TEST(SignCommands, WhatTheLoaderRefusesIsNeitherSignedNorExported) {
+  const tests::TemporaryFolder folder;
+  Blob bytes = make_blob(sample_robot(), sample_provenance());
+  bytes[blob_layout::double_vectors + 64 + 32 + 6] ^= 1;  // x of the first vector's pose
+  const std::uint32_t crc = crc32(bytes.data(), blob_layout::crc);
+  for (std::size_t k = 0; k < 4; ++k) bytes.at(blob_layout::crc + k) = static_cast<std::uint8_t>(crc >> (8 * k));
+  tests::write_bytes(folder / "bad.blob", {bytes.begin(), bytes.end()});
+  ASSERT_EQ(run_mdhcal({"show", folder / "bad.blob"}).exit_code, 0);
+  ASSERT_EQ(run_mdhcal({"keygen", "-o", folder / "room"}).exit_code, 0);
+  for (const auto& arguments : {std::vector<std::string>{"sign", folder / "bad.blob", "--key", folder / "room.key", "-o", folder / "out"},
+                                std::vector<std::string>{"export", folder / "bad.blob", "--format", "bin", "-o", folder / "out"}}) {
+    const auto run = run_mdhcal(arguments);
+    EXPECT_EQ(run.exit_code, 2) << arguments[0];
+    EXPECT_NE(run.err.find("self-test failed"), std::string::npos) << run.err;
   }
 }
 
