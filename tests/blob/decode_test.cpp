@@ -236,6 +236,31 @@ TEST(Decode, RefusesMalformedText) {
   }
 }
 
+// Well-formed UTF-8 (RFC 3629), as docs/blob.md says; every other byte sequence is refused in every text.
+TEST(Decode, RefusesTextThatIsNoUtf8) {
+  const char* const good[] = {"caf\xC3\xA9", "\xC2\x80", "\xDF\xBF", "\xE0\xA0\x80", "\xE2\x82\xAC", "\xED\x9F\xBF", "\xEE\x80\x80",
+                              "\xEF\xBF\xBF", "\xF0\x90\x80\x80", "\xF0\x9F\x98\x80", "\xF4\x8F\xBF\xBF"};
+  const char* const bad[] = {"caf\xE9",      "\x80",         "\xBF",     "\xC0\x80",         "\xC1\xBF", "\xC3",     "\xC3x",
+                             "\xE0\x9F\xBF", "\xED\xA0\x80", "\xE2\x82", "\xF0\x8F\xBF\xBF", "\xF0\x9F\x98",
+                             "\xF4\x90\x80\x80", "\xF5\x80\x80\x80", "\xFF", "\xF0\x9F\x98x"};
+  const std::size_t fields[][2] = {{at::name, at::name_size}, {at::serial, at::serial_size}, {at::method, at::method_size},
+                                   {at::targets, at::target_name_size}};
+  for (const auto& [offset, size] : fields) {
+    const auto decoded = [&](const char* text, std::size_t from) {
+      Bytes bytes = copy_of(golden::every_field);
+      for (std::size_t i = 0; i < size; ++i) bytes[offset + i] = i < from ? 'x' : 0;
+      for (std::size_t i = 0; text[i] != 0; ++i) bytes[offset + from + i] = static_cast<std::uint8_t>(text[i]);
+      return decode_repaired(bytes);
+    };
+    for (const char* text : good) EXPECT_EQ(decoded(text, 0), Status::ok) << text;
+    for (const char* text : bad) EXPECT_EQ(decoded(text, 0), Status::blob_value) << text;
+    // Up to the last byte before the zero, and over it.
+    EXPECT_EQ(decoded("\xE2\x82\xAC", size - 4), Status::ok);
+    EXPECT_EQ(decoded("\xE2\x82\xAC", size - 3), Status::blob_value);
+    EXPECT_EQ(decoded("\xE2\x82", size - 2), Status::blob_value);
+  }
+}
+
 TEST(Decode, HoldsTheCallersSerial) {
   const Bytes bytes = copy_of(golden::every_field);
   DecodeOptions options;

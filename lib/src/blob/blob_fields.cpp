@@ -47,6 +47,22 @@ void load_provenance(const std::uint8_t* bytes, BlobProvenance& out) {
   out.max_after_m = load_f64(bytes + at::held_out + 24);
 }
 
+// How many bytes follow the first one, which is not ASCII, in a well-formed UTF-8 character (RFC 3629: the shortest form, no
+// surrogates, nothing above U+10FFFF). 4: it is not well-formed. `size`: bytes that may be read.
+std::size_t continuation_bytes(const std::uint8_t* p, std::size_t size) noexcept {
+  constexpr std::size_t malformed = 4;
+  const std::uint8_t first = p[0];
+  if (first < 0xC2 || first > 0xF4) return malformed;
+  const std::size_t more = first < 0xE0 ? 1 : first < 0xF0 ? 2 : 3;
+  if (more >= size) return malformed;
+  for (std::size_t i = 1; i <= more; ++i) {
+    if ((p[i] & 0xC0U) != 0x80U) return malformed;
+  }
+  const bool overlong = (first == 0xE0 && p[1] < 0xA0) || (first == 0xF0 && p[1] < 0x90);
+  const bool outside = (first == 0xED && p[1] > 0x9F) || (first == 0xF4 && p[1] > 0x8F);
+  return overlong || outside ? malformed : more;
+}
+
 }  // namespace
 
 bool all_zero(const std::uint8_t* p, std::size_t size) noexcept {
@@ -61,7 +77,9 @@ bool text_valid(const std::uint8_t* p, std::size_t size) noexcept {
   std::size_t length = 0;
   while (length < size && p[length] != 0) {
     if (p[length] < 0x20 || p[length] == 0x7F) return false;
-    ++length;
+    const std::size_t more = p[length] < 0x80 ? 0 : continuation_bytes(p + length, size - length);
+    if (more > 3) return false;
+    length += 1 + more;
   }
   return length < size && all_zero(p + length, size - length);
 }
