@@ -8,6 +8,8 @@ namespace mdhcal::offline {
 
 namespace {
 
+constexpr std::size_t most_listed = 50;  // columns named in a message: one screen
+
 bool is_length(const Unit& unit) { return unit.name == millimetre.name || unit.name == metre.name; }
 bool is_angle(const Unit& unit) { return unit.name == degree.name || unit.name == radian.name; }
 
@@ -109,8 +111,10 @@ std::vector<Column> Columns::joints(const Geometry& geometry, const Unit& angle,
 
 std::string Columns::unknown() const {
   std::string names;
+  std::size_t count = 0;
   for (std::size_t i = 0; i < used_.size(); ++i) {
     if (used_[i]) continue;
+    if (++count > most_listed) return names + ", ...";
     names += names.empty() ? "\"" : ", \"";
     names += csv_.names()[i];
     names += '"';
@@ -120,8 +124,9 @@ std::string Columns::unknown() const {
 
 std::string Columns::list() const {
   std::string names;
-  for (const std::string& name : csv_.names()) names += (names.empty() ? "" : ", ") + name;
-  return names;
+  const auto& all = csv_.names();
+  for (std::size_t i = 0; i < std::min(all.size(), most_listed); ++i) names += (i == 0 ? "" : ", ") + all[i];
+  return all.size() > most_listed ? names + ", ..." : names;
 }
 
 }  // namespace mdhcal::offline

@@ -6,11 +6,13 @@
 #include <cmath>
 #include <map>
 #include <numbers>
+#include <set>
 #include <span>
 
 #include <yaml-cpp/yaml.h>
 
 #include "offline/base/error.hpp"
+#include "offline/base/text.hpp"
 #include "offline/robot/convention.hpp"
 #include "offline/robot/rotation.hpp"
 #include "offline/robot/units.hpp"
@@ -20,6 +22,8 @@ namespace mdhcal::offline {
 namespace {
 
 constexpr std::size_t ur_joints = 6;
+// A thousand times what eight joints of six numbers take, comments and all.
+constexpr std::size_t most_kinematics_bytes = std::size_t{1} << 20;
 constexpr std::array<const char*, ur_joints> ur_names{"shoulder", "upper_arm", "forearm",
                                                       "wrist_1",  "wrist_2",   "wrist_3"};
 constexpr std::array<const char*, 6> coordinates{"x", "y", "z", "roll", "pitch", "yaw"};
@@ -92,6 +96,17 @@ std::array<double, ur_joints> parse_list(std::string_view line, const std::strin
   return values;
 }
 
+// A map that names a key twice would let one of the two win silently.
+void refuse_repeats(const YAML::Node& map, const std::string& path) {
+  std::set<std::string> keys;
+  for (const auto& entry : map) {
+    if (!entry.first.IsScalar() || keys.insert(entry.first.Scalar()).second) continue;
+    const YAML::Mark mark = entry.first.Mark();
+    throw InputError(path, mark.line + 1, mark.column + 1,
+                     "Found \"" + entry.first.Scalar() + "\" a second time; expected each key once.");
+  }
+}
+
 double coordinate(const YAML::Node& joint, const std::string& name, const char* key, const std::string& path) {
   const YAML::Mark mark = joint.Mark();
   const YAML::Node node = joint[key];
@@ -108,6 +123,7 @@ double coordinate(const YAML::Node& joint, const std::string& name, const char* 
 }
 
 Frame<double> frame_of_node(const YAML::Node& joint, const std::string& name, const std::string& path) {
+  refuse_repeats(joint, path);
   std::array<double, 6> v{};
   for (std::size_t k = 0; k < v.size(); ++k) v[k] = coordinate(joint, name, coordinates[k], path);
   return frame_of_xyz_rpy({v[0], v[1], v[2]}, {v[3], v[4], v[5]});
@@ -133,6 +149,11 @@ Robot ur_nominal(const std::string& model) {
 }
 
 Chain parse_ros_kinematics(const std::string& text, const std::string& path) {
+  if (text.size() > most_kinematics_bytes) {
+    throw InputError(path, 0, 0, "Found " + std::to_string(text.size()) + " bytes; expected ROS kinematics of at most " +
+                                     std::to_string(most_kinematics_bytes) + ".");
+  }
+  require_text(text, path, "ROS kinematics (YAML)");
   YAML::Node document;
   try {
     document = YAML::Load(text);
@@ -143,6 +164,8 @@ Chain parse_ros_kinematics(const std::string& text, const std::string& path) {
   if (!kinematics || !kinematics.IsMap()) {
     throw InputError(path, 1, 1, "There is no map \"kinematics\"; expected one with a frame a joint.");
   }
+  refuse_repeats(document, path);
+  refuse_repeats(kinematics, path);
   std::vector<std::pair<std::string, YAML::Node>> nodes;
   const bool ur = static_cast<bool>(kinematics[ur_names[0]]);
   if (ur) {
@@ -177,6 +200,7 @@ Chain parse_ros_kinematics(const std::string& text, const std::string& path) {
 }
 
 Robot parse_ur_calibration(const std::string& text, const std::string& path, const std::string& model) {
+  require_text(text, path, "a UR calibration");
   std::map<std::string, std::array<double, ur_joints>> deltas;
   long number = 0;
   for (std::size_t start = 0; start < text.size();) {
@@ -190,7 +214,10 @@ Robot parse_ur_calibration(const std::string& text, const std::string& path, con
     std::string key(line.substr(0, equals));
     key.erase(key.find_last_not_of(" \t") + 1);
     key.erase(0, key.find_first_not_of(" \t"));
-    if (key.starts_with("delta_")) deltas[key] = parse_list(line, path, number);
+    if (!key.starts_with("delta_")) continue;
+    if (!deltas.emplace(key, parse_list(line, path, number)).second) {
+      throw InputError(path, number, 1, "Found \"" + key + "\" a second time; expected each list once.");
+    }
   }
   auto table = standard_table(model);
   Robot robot = ur_nominal(model);

@@ -2,6 +2,7 @@
 #include "offline/robot/urdf.hpp"
 
 #include <algorithm>
+#include <cctype>
 #include <charconv>
 #include <cmath>
 #include <cstring>
@@ -13,6 +14,7 @@
 
 #include "offline/base/error.hpp"
 #include "offline/base/read_file.hpp"
+#include "offline/base/text.hpp"
 #include "offline/robot/rotation.hpp"
 #include "offline/robot/units.hpp"
 
@@ -30,7 +32,9 @@ std::string element(pugi::xml_node node) {
 class Urdf {
  public:
   Urdf(const std::string& text, std::string path) : text_(text), path_(std::move(path)) {
-    const pugi::xml_parse_result result = document_.load_buffer(text_.data(), text_.size());
+    require_utf8();
+    const pugi::xml_parse_result result =
+        document_.load_buffer(text_.data(), text_.size(), pugi::parse_default, pugi::encoding_utf8);
     if (!result) fail(result.offset, std::string("The file is not well-formed XML: ") + result.description() + '.');
     root_ = document_.child("robot");
     if (!root_) fail(0, "The file has no <robot> element; expected a URDF.");
@@ -42,6 +46,10 @@ class Urdf {
     for (const pugi::xml_node link : root_.children("link")) links_.insert(attribute(link, "name"));
     for (const pugi::xml_node joint : root_.children("joint")) {
       const std::string child = attribute(required(joint, "child"), "link");
+      for (const char* once : {"parent", "child", "origin", "axis", "limit", "mimic"}) {
+        const pugi::xml_node again = joint.child(once).next_sibling(once);
+        if (again) fail(again, "Joint \"" + attribute(joint, "name") + "\" has a second " + element(again) + "; expected one.");
+      }
       if (!parent_joint_.emplace(child, joint).second) {
         fail(joint, "Link \"" + child + "\" is the child of two joints; expected a tree.");
       }
@@ -49,7 +57,7 @@ class Urdf {
     }
   }
 
-  std::string name() const { return root_.attribute("name").as_string(); }
+  std::string name() const { return text_of(root_, root_.attribute("name")); }
 
   /// The joints from `base` to `tip`, in that order.
   std::vector<pugi::xml_node> joints(std::string base, std::string tip) const {
@@ -119,6 +127,23 @@ class Urdf {
   }
 
  private:
+  // One encoding, said in its own words: a parser that guesses calls other ones not well-formed, or mixes two in what it writes.
+  void require_utf8() const {
+    const std::size_t end = text_.find("?>");
+    const std::size_t key = text_.find("encoding");
+    const bool ascii = std::all_of(text_.begin(), text_.end(), [](char c) { return static_cast<unsigned char>(c) < 0x80U; });
+    if (!ascii && key < end && end != std::string::npos) {
+      const std::size_t open = text_.find_first_of("\"'", key);
+      const std::size_t close = open < end ? text_.find(text_[open], open + 1) : std::string::npos;
+      std::string name = close < end ? text_.substr(open + 1, close - open - 1) : "";
+      std::transform(name.begin(), name.end(), name.begin(), [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
+      if (close < end && name != "UTF-8" && name != "UTF8") {
+        fail(static_cast<std::ptrdiff_t>(open), "Found text in the encoding " + name + "; expected a URDF in UTF-8.");
+      }
+    }
+    require_text(text_, path_, "a URDF");
+  }
+
   [[noreturn]] void fail(std::ptrdiff_t offset, const std::string& message) const {
     const auto end = text_.begin() + std::clamp<std::ptrdiff_t>(offset, 0, static_cast<std::ptrdiff_t>(text_.size()));
     const long line = 1 + std::count(text_.begin(), end, '\n');
@@ -132,7 +157,16 @@ class Urdf {
     if (!found || found.as_string()[0] == '\0') {
       fail(node, element(node) + " has no attribute \"" + key + "\".");
     }
-    return found.as_string();
+    return text_of(node, found);
+  }
+
+  // XML can write any character as a number.
+  std::string text_of(pugi::xml_node node, pugi::xml_attribute attribute) const {
+    const std::string text = attribute.as_string();
+    if (printable(text) != text) {
+      fail(node, element(node) + ": found a control character in " + attribute.name() + "; expected printable text.");
+    }
+    return text;
   }
 
   pugi::xml_node required(pugi::xml_node node, const char* child) const {

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <ctime>
 
 #include "offline/base/error.hpp"
 #include "offline/base/random.hpp"
@@ -243,6 +244,24 @@ TEST(Dataset, MessagesNameThePlaceWhatWasFoundAndWhatWasExpected) {
     EXPECT_NE(message.find(c.found), std::string::npos) << message << "\n  wanted " << c.found;
     EXPECT_NE(message.find(c.expected), std::string::npos) << message << "\n  wanted " << c.expected;
   }
+}
+
+// 200 000 columns in the header, in seconds of a minute if each looked back to the begin of the line.
+TEST(Dataset, TimeIsLinearInColumns) {
+  std::string header = "q1,q2,x,y,z", row = "1,2,3,4,5";
+  for (int i = 0; i < 200000; ++i) {
+    header += ",another column " + std::to_string(i);
+    row += ",0";
+  }
+  const auto begin = std::clock();
+  const Dataset data = parse_dataset(header + '\n' + row + '\n', "m.csv", arm(2));
+  // Measured 0.15 s; the quadratic search took 90 s.
+  EXPECT_LT(static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC, 10.0);
+  ASSERT_EQ(data.notes.size(), 1U);
+  EXPECT_LT(data.notes[0].size(), 2000U) << "a message is for people";
+  // Places in the header stay right, behind a quoted name of two lines too.
+  const std::string message = message_of("q1,\"two\nlines\",q2,x,y,z,x\n1,2,3,4,5,6,7\n");
+  EXPECT_NE(message.find("m.csv:1:"), std::string::npos) << message;
 }
 
 TEST(Dataset, AQuotedFieldMayHoldSeparatorsQuotesAndLines) {

@@ -186,6 +186,9 @@ TEST(UrFactory, MalformedFilesAreRefusedWithTheirSpot) {
   EXPECT_NE(conf("delta_a = 5").find("no [ or no ]"), std::string::npos);
   EXPECT_NE(conf("delta_a = ] [").find("no [ or no ]"), std::string::npos);
   EXPECT_NE(conf("delta_a = [nan, 0, 0, 0, 0, 0]").find("no number"), std::string::npos);
+  EXPECT_NE(conf("delta_a = [1, 2, 3, 4, 5, 6]\n# again\n delta_a = [1, 2, 3, 4, 5, 6]\n").find("c.conf:3:1: Found \"delta_a\" a second time"),
+            std::string::npos);
+  EXPECT_NE(conf("# caf\xE9\n").find("c.conf:1:6: Found the byte 0xE9"), std::string::npos);
   EXPECT_NE(conf("[mounting]\n").find("There is no \"delta_theta\""), std::string::npos);
   EXPECT_NE(conf(calibration_conf, "kr6").find("ur16e"), std::string::npos);
   const auto yaml = [](const std::string& text) {
@@ -197,6 +200,13 @@ TEST(UrFactory, MalformedFilesAreRefusedWithTheirSpot) {
   EXPECT_NE(yaml("kinematics:\n  one: {x: 0, y: 0, z: zero, roll: 0, pitch: 0, yaw: 0}\n").find("k.yaml:2:24: \"zero\""),
             std::string::npos);
   EXPECT_NE(yaml("kinematics:\n  one: {x: 0, y: 0, z: 0, roll: 0, pitch: 0}\n").find("no \"yaw\""), std::string::npos);
+  EXPECT_NE(yaml("kinematics:\n  one: {x: 0, y: 0, z: 0, roll: 0, pitch: 0, yaw: 0, x: 1}\n").find("k.yaml:2:54: Found \"x\" a second"),
+            std::string::npos);
+  EXPECT_NE(yaml("kinematics:\n  a: {}\n  a: {}\n").find("k.yaml:3:3: Found \"a\" a second"), std::string::npos);
+  EXPECT_NE(yaml("kinematics: \xFF\n").find("0xFF"), std::string::npos);
+  EXPECT_NE(yaml("kinematics: {a: " + std::string(100000000, 'x') + "}\n").find("at most 1048576"), std::string::npos);
+  EXPECT_NE(yaml("kinematics: {a: " + std::string(1000000, 'x') + "}\n").find("0 moving joints"), std::string::npos);
+  EXPECT_NE(yaml("kinematics: " + std::string(1000000, '[') + "\n").find("k.yaml:"), std::string::npos);
   EXPECT_NE(yaml("kinematics:\n  hash: x\n").find("0 moving joints"), std::string::npos);
 }
 

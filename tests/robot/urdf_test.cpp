@@ -191,6 +191,18 @@ TEST(Urdf, LimitsAndNamesAreRead) {
   }
 }
 
+// A declaration that names another encoding does no harm where every byte is ASCII.
+TEST(Urdf, AsciiIsReadWhateverItsDeclarationSays) {
+  for (const char* encoding : {"ISO-8859-1", "us-ascii", "utf-8", "UTF-16"}) {
+    const std::string text = std::string("<?xml version='1.0' encoding='") + encoding +
+                             "'?><robot name='x'><link name='a'/><link name='b'/><joint name='j' type='continuous'>"
+                             "<parent link='a'/><child link='b'/></joint></robot>";
+    EXPECT_EQ(parse_urdf(text, "a.urdf", "", "").joints.size(), 1U) << encoding;
+  }
+  const std::string utf8 = "<?xml version='1.0' encoding='UTF-8'?><robot name='caf\xC3\xA9'><link name='a'/></robot>";
+  EXPECT_EQ(parse_urdf(utf8, "a.urdf", "", "").name, "caf\xC3\xA9");
+}
+
 struct Malformed {
   const char* what;
   const char* text;
@@ -229,6 +241,13 @@ INSTANTIATE_TEST_SUITE_P(
         Malformed{"axis", ONE("<joint name=\"j\" type=\"revolute\">" LINKS "<axis xyz=\"0 0 0\"/></joint>"), "length 0"},
         Malformed{"limits",
                   ONE("<joint name=\"j\" type=\"revolute\">" LINKS "<limit lower=\"2\" upper=\"1\"/></joint>"), "above"},
+        Malformed{"Latin-1", "<?xml version=\"1.0\" encoding=\"ISO-8859-1\"?>\n<robot name=\"caf\xE9\"/>",
+                  "bad.urdf:1:30: Found text in the encoding ISO-8859-1; expected a URDF in UTF-8"},
+        Malformed{"Latin-1 that says nothing", "<robot name=\"caf\xE9\"/>", "bad.urdf:1:17: Found the byte 0xE9"},
+        Malformed{"UTF-16", "\xFF\xFE<", "Found text in UTF-16"},
+        Malformed{"control character", "<robot name=\"a\">\n<link name=\"&#27;[2J\"/></robot>", "bad.urdf:2:2: <link>: found a control"},
+        Malformed{"two origins", ONE("<joint name=\"j\" type=\"revolute\">" LINKS "<origin/>\n<origin/></joint>"),
+                  "bad.urdf:4:2: Joint \"j\" has a second <origin>"},
         Malformed{"no child", ONE("<joint name=\"j\" type=\"revolute\"><parent link=\"a\"/></joint>"), "no <child>"},
         Malformed{"ring",
                   ONE("<joint name=\"j\" type=\"fixed\">" LINKS "</joint>"
