@@ -34,11 +34,49 @@ std::vector<const RowResult*> judged(const Calibration& calibration) {
   return rows;
 }
 
-// Error norms in ascending order with the share of rows at or below each.
+// A picture is 720 pixels wide: two marks for each column of pixels. More are not seen, and a page of 10^5 of them does not open.
+constexpr std::size_t most_drawn = 1440;
+
+// How many neighbours share one mark.
+std::size_t neighbours(std::size_t rows) { return (rows + most_drawn - 1) / most_drawn; }
+
+// Which of `candidates` are drawn, in their order: all, or of every so many neighbours the one with the largest error. What
+// stands out is never left out.
+std::vector<std::size_t> drawn(const Calibration& calibration, const std::vector<std::size_t>& candidates) {
+  const std::size_t step = neighbours(candidates.size());
+  std::vector<std::size_t> rows;
+  for (std::size_t i = 0; i < candidates.size(); i += step) {
+    const auto begin = candidates.begin() + static_cast<std::ptrdiff_t>(i);
+    const auto end = candidates.begin() + static_cast<std::ptrdiff_t>(std::min(i + step, candidates.size()));
+    rows.push_back(*std::max_element(begin, end, [&](std::size_t a, std::size_t b) {
+      return norm_mm(calibration.rows[a].after_mm) < norm_mm(calibration.rows[b].after_mm);
+    }));
+  }
+  return rows;
+}
+
+// What a caption says of that.
+std::string thinned(std::size_t candidates) {
+  const std::size_t step = neighbours(candidates);
+  return step <= 1 ? "" : "; of every " + std::to_string(step) + " rows the one with the largest error after";
+}
+
+template <class Keep>
+std::vector<std::size_t> rows_that(const Calibration& calibration, Keep keep) {
+  std::vector<std::size_t> rows;
+  for (std::size_t i = 0; i < calibration.rows.size(); ++i) {
+    if (keep(calibration.rows[i])) rows.push_back(i);
+  }
+  return rows;
+}
+
+// Error norms in ascending order with the share of rows at or below each: of all rows, or of so many steps up to the largest.
 std::vector<std::vector<double>> cumulative(std::vector<double> errors) {
   std::sort(errors.begin(), errors.end());
   std::vector<std::vector<double>> rows;
+  const std::size_t step = neighbours(errors.size());
   for (std::size_t i = 0; i < errors.size(); ++i) {
+    if ((errors.size() - 1 - i) % step != 0) continue;
     rows.push_back({errors[i], 100.0 * static_cast<double>(i + 1) / static_cast<double>(errors.size())});
   }
   return rows;
@@ -105,15 +143,17 @@ Figure distribution_figure(const Calibration& calibration) {
 Figure per_pose_figure(const Calibration& calibration) {
   std::vector<std::vector<double>> before, after, outliers;
   double first_test = 0;
-  for (std::size_t i = 0; i < calibration.rows.size(); ++i) {
+  const auto all = rows_that(calibration, [](const RowResult&) { return true; });
+  for (const std::size_t i : drawn(calibration, all)) {
     const RowResult& row = calibration.rows[i];
     const auto at = static_cast<double>(i + 1);
     before.push_back({at, nonzero(before_norm_mm(row))});
     after.push_back({at, nonzero(after_norm_mm(row))});
     if (row.outlier) outliers.push_back({at, nonzero(after_norm_mm(row))});
-    if (row.test && first_test <= 0) first_test = at - 0.5;
   }
-  Figure figure{"Error of each row before and after", "", 720, 300};
+  const auto test = std::find_if(calibration.rows.begin(), calibration.rows.end(), [](const RowResult& row) { return row.test; });
+  if (test != calibration.rows.end()) first_test = static_cast<double>(test - calibration.rows.begin()) + 0.5;
+  Figure figure{"Error of each row before and after" + thinned(all.size()), "", 720, 300};
   figure.script = data_block("before", before) + data_block("after", after);
   if (!outliers.empty()) figure.script += data_block("outliers", outliers);
   figure.script += "set logscale y\nset grid\nset xlabel 'row'\nset ylabel 'error [mm]'\nset key outside top horizontal\n"
@@ -131,13 +171,13 @@ Figure per_pose_figure(const Calibration& calibration) {
 
 Figure axes_figure(const Calibration& calibration) {
   std::vector<std::vector<double>> rows;
-  for (std::size_t i = 0; i < calibration.rows.size(); ++i) {
+  const auto good = rows_that(calibration, [](const RowResult& row) { return !row.outlier; });
+  for (const std::size_t i : drawn(calibration, good)) {
     const RowResult& row = calibration.rows[i];
-    if (row.outlier) continue;
     rows.push_back({static_cast<double>(i + 1), row.after_mm[0], row.after_mm[1], row.after_mm[2]});
   }
   if (rows.empty()) rows.push_back({0, 0, 0, 0});
-  Figure figure{"Residual along each axis of the measurement frame, outliers left out", "", 720, 480};
+  Figure figure{"Residual along each axis of the measurement frame, outliers left out" + thinned(good.size()), "", 720, 480};
   figure.script = data_block("r", rows) + "set multiplot layout 3,1\nset grid\nset tmargin 0.5\nset bmargin 2\n"
                   "set lmargin 12\nset xzeroaxis\nset xrange [0:" +
                   text_of(static_cast<double>(calibration.rows.size()) + 1) + "]\n";
@@ -158,9 +198,13 @@ Figure vectors_figure(const Calibration& calibration) {
   std::vector<std::vector<double>> rows;
   double longest = 0, extent = 0;
   Vector3 low{HUGE_VAL, HUGE_VAL, HUGE_VAL}, high{-HUGE_VAL, -HUGE_VAL, -HUGE_VAL};
-  for (const RowResult& row : calibration.rows) {
+  const auto points = rows_that(calibration, [&](const RowResult& row) {
+    const MeasurementKind kind = measurement(calibration, row).kind;
+    return !row.outlier && (kind == MeasurementKind::position || kind == MeasurementKind::pose);
+  });
+  for (const std::size_t i : drawn(calibration, points)) {
+    const RowResult& row = calibration.rows[i];
     const Measurement& m = measurement(calibration, row);
-    if (row.outlier || (m.kind != MeasurementKind::position && m.kind != MeasurementKind::pose)) continue;
     const Vector3 p = transform(base_T_tracker, m.position_m);
     const Vector3 e = rotate(base_T_tracker, row.after_mm);
     rows.push_back({1e3 * p[0], 1e3 * p[1], 1e3 * p[2], e[0], e[1], e[2], norm_mm(e)});
@@ -175,8 +219,9 @@ Figure vectors_figure(const Calibration& calibration) {
   // The longest arrow takes an eighth of the workspace; the factor is a round number and stands in the caption.
   double factor = longest > 0 && extent > 0 ? extent / 8 / longest : 1;
   factor = std::pow(10, std::floor(std::log10(factor)));
-  Figure figure{"Error vectors after calibration, enlarged " + text_of(factor) + " times, in the robot's base frame", "", 720,
-                420};
+  Figure figure{"Error vectors after calibration, enlarged " + text_of(factor) + " times, in the robot's base frame" +
+                    thinned(points.size()),
+                "", 720, 420};
   figure.script = data_block("v", rows) + "f = " + text_of(factor) +
                   "\nset xlabel 'x [mm]'\nset ylabel 'y [mm]'\nset zlabel 'z [mm]' rotate\nset grid\nset view 62,38,1,1.15\nset tmargin 0\nset bmargin 0\n"
                   "set xyplane 0.05\nset tics font ',9'\nset cblabel 'error [mm]'\n"

@@ -2,10 +2,12 @@
 #include "offline/report/gnuplot.hpp"
 
 #include <cerrno>
+#include <chrono>
 #include <cmath>
 #include <csignal>
 #include <cstdio>
 #include <cstring>
+#include <thread>
 
 #include <fcntl.h>
 #include <poll.h>
@@ -42,15 +44,28 @@ class Pipe {
   bool open_ = false;
 };
 
-// Sends `input` to the program and returns what it prints, reading and writing in turn so that neither side waits.
-bool exchange_with(Pipe& to, Pipe& from, const std::string& input, std::string& output) {
+using Clock = std::chrono::steady_clock;
+
+// A picture of some thousand points is a megabyte; a program that prints without end is stopped here.
+constexpr std::size_t most_output = std::size_t{1} << 28;
+
+int milliseconds_until(Clock::time_point end) {
+  const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(end - Clock::now()).count();
+  return left > 0 ? static_cast<int>(left) : 0;
+}
+
+// Sends `input` to the program and returns what it prints, reading and writing in turn so that neither side waits. False if it
+// has not ended its output by the deadline, or prints too much.
+bool exchange_with(Pipe& to, Pipe& from, const std::string& input, std::string& output, Clock::time_point end) {
   std::size_t sent = 0;
   char buffer[65536];
   if (input.empty()) to.close_end(1);
   fcntl(to.write_end(), F_SETFL, O_NONBLOCK);
   while (true) {
     pollfd waits[2] = {{from.read_end(), POLLIN, 0}, {to.write_end(), POLLOUT, 0}};
-    if (poll(waits, 2, 60000) <= 0) return false;  // a minute without a byte: it hangs
+    const int ready = poll(waits, 2, milliseconds_until(end));
+    if (ready < 0 && errno == EINTR) continue;
+    if (ready <= 0 || Clock::now() >= end || output.size() > most_output) return false;
     if ((waits[1].revents & (POLLERR | POLLHUP)) != 0) to.close_end(1);
     if ((waits[1].revents & POLLOUT) != 0) {
       const ssize_t count = write(to.write_end(), input.data() + sent, input.size() - sent);
@@ -65,7 +80,22 @@ bool exchange_with(Pipe& to, Pipe& from, const std::string& input, std::string& 
   }
 }
 
-bool run_gnuplot(const std::string& script, std::string& output, std::string& reason) {
+// The exit status of the child as waitpid() tells it; killed, with all that it started, if it has not ended by the deadline.
+int wait_for(pid_t child, Clock::time_point end) {
+  int status = 0;
+  pid_t ended = 0;
+  while ((ended = waitpid(child, &status, WNOHANG)) == 0 && Clock::now() < end) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  }
+  if (ended == child) return status;
+  kill(-child, SIGKILL);
+  while (waitpid(child, &status, 0) < 0 && errno == EINTR) {
+  }
+  return status;
+}
+
+bool run_gnuplot(const std::string& script, std::string& output, std::string& reason, std::chrono::milliseconds at_most) {
+  const Clock::time_point end = Clock::now() + at_most;
   Pipe to, from;
   if (!to.open() || !from.open()) {
     reason = "no pipe could be opened";
@@ -83,7 +113,12 @@ bool run_gnuplot(const std::string& script, std::string& output, std::string& re
   struct sigaction ignore = {}, before = {};
   ignore.sa_handler = SIG_IGN;
   sigaction(SIGPIPE, &ignore, &before);
-  const int error = posix_spawnp(&child, program, &actions, nullptr, arguments, environ);
+  // In a process group of its own, so that what a wrapper starts is stopped with it.
+  posix_spawnattr_t attributes;
+  posix_spawnattr_init(&attributes);
+  posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETPGROUP);
+  const int error = posix_spawnp(&child, program, &actions, &attributes, arguments, environ);
+  posix_spawnattr_destroy(&attributes);
   posix_spawn_file_actions_destroy(&actions);
   to.close_end(0);
   from.close_end(1);
@@ -91,30 +126,35 @@ bool run_gnuplot(const std::string& script, std::string& output, std::string& re
   if (error != 0) {
     reason = std::string("gnuplot cannot be started: ") + std::strerror(error);
   } else {
-    done = exchange_with(to, from, script, output);
-    if (!done) kill(child, SIGKILL);
-    int status = 0;
-    while (waitpid(child, &status, 0) < 0 && errno == EINTR) {
-    }
+    done = exchange_with(to, from, script, output, end);
+    if (!done) kill(-child, SIGKILL);
+    const int status = wait_for(child, end);
     // The C library of some systems reports a missing program by exit status 127 only.
     if (!done || !WIFEXITED(status) || WEXITSTATUS(status) != 0) {
       done = false;
-      reason = WIFEXITED(status) && WEXITSTATUS(status) == 127 ? "gnuplot was not found" : "gnuplot failed";
+      reason = WIFEXITED(status) && WEXITSTATUS(status) == 127 ? "gnuplot was not found"
+               : Clock::now() >= end                           ? "gnuplot did not end in time and was stopped"
+                                                               : "gnuplot failed";
     }
   }
   sigaction(SIGPIPE, &before, nullptr);
   return done;
 }
 
+// In one pass: to replace in place would move the rest of the text at every place.
 void replace_all(std::string& text, const std::string& from, const std::string& to) {
-  for (std::size_t at = 0; (at = text.find(from, at)) != std::string::npos; at += to.size()) {
-    text.replace(at, from.size(), to);
+  std::string out;
+  out.reserve(text.size() + text.size() / 8);
+  std::size_t done = 0;
+  for (std::size_t at = 0; (at = text.find(from, done)) != std::string::npos; done = at + from.size()) {
+    out.append(text, done, at - done).append(to);
   }
+  text = out.append(text, done);
 }
 
 }  // namespace
 
-std::vector<std::string> draw(const std::vector<Figure>& figures, std::string& reason) {
+std::vector<std::string> draw(const std::vector<Figure>& figures, std::string& reason, std::chrono::milliseconds at_most) {
   std::string script = "set encoding utf8\n";
   for (const Figure& figure : figures) {
     script += "reset session\nset terminal svg enhanced size " + std::to_string(figure.width) + ',' +
@@ -122,7 +162,7 @@ std::vector<std::string> draw(const std::vector<Figure>& figures, std::string& r
               "\nunset output\n";
   }
   std::string output;
-  if (!run_gnuplot(script, output, reason)) return {};
+  if (!run_gnuplot(script, output, reason, at_most)) return {};
   std::vector<std::string> drawn;
   for (std::size_t at = output.find("<svg"); at != std::string::npos; at = output.find("<svg", at)) {
     const std::size_t end = output.find("</svg>", at);

@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include "offline/report/gnuplot.hpp"
 
+#include <chrono>
 #include <cmath>
 #include <cstdlib>
+#include <filesystem>
+#include <fstream>
 #include <set>
 
 #include <gtest/gtest.h>
@@ -49,6 +52,27 @@ TEST(Gnuplot, SaysWhyNothingWasDrawn) {
   EXPECT_TRUE(draw({{"Any", "plot x"}}, reason).empty());
   setenv("PATH", path.c_str(), 1);
   EXPECT_NE(reason.find("gnuplot"), std::string::npos);
+}
+
+// Programs of that name that never end, in every way: they are stopped, with all that they started, and the reason says so.
+TEST(Gnuplot, ThatNeverEndsIsStopped) {
+  const std::string path = std::getenv("PATH");
+  std::string pattern = "gnuplot-test-XXXXXX";
+  ASSERT_NE(mkdtemp(pattern.data()), nullptr);
+  const auto folder = std::filesystem::absolute(pattern);
+  for (const char* script : {"sleep 1000", "cat >/dev/null; exec 1>&-; sleep 1000", "while :; do echo x; sleep 0.02; done",
+                             "sleep 1000 & wait"}) {
+    std::ofstream(folder / "gnuplot") << "#!/bin/sh\n" << script << '\n';
+    std::filesystem::permissions(folder / "gnuplot", std::filesystem::perms::owner_all);
+    setenv("PATH", (folder.string() + ':' + path).c_str(), 1);
+    std::string reason;
+    const auto begin = std::chrono::steady_clock::now();
+    EXPECT_TRUE(draw({{"Any", "plot x"}}, reason, std::chrono::milliseconds(300)).empty()) << script;
+    EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(20)) << script;
+    EXPECT_NE(reason.find("did not end in time"), std::string::npos) << script << ": " << reason;
+    setenv("PATH", path.c_str(), 1);
+  }
+  std::filesystem::remove_all(folder);
 }
 
 }  // namespace
