@@ -33,6 +33,13 @@ TEST(Replay, Blob) { replay("blob", blob_target, 500); }
 TEST(Replay, Loader) { replay("blob", loader_target, 100); }
 TEST(Replay, Robot) { replay("robot", robot_target, 200); }
 TEST(Replay, Dataset) { replay("dataset", dataset_target, 200); }
+TEST(Replay, Urdf) { replay("urdf", urdf_target, 200); }
+TEST(Replay, Kinematics) { replay("kinematics", kinematics_target, 200); }
+TEST(Replay, UrCalibration) { replay("ur_calibration", ur_calibration_target, 200); }
+TEST(Replay, Joints) { replay("joints", joints_target, 200); }
+TEST(Replay, Poses) { replay("poses", poses_target, 200); }
+TEST(Replay, Manifest) { replay("manifest", manifest_target, 200); }
+TEST(Replay, Key) { replay("key", key_target, 100); }
 TEST(Replay, Source) { replay("source", source_target, 100); }
 TEST(Replay, Program) { replay("program", program_target, 200); }
 TEST(Replay, Profile) { replay("profile", profile_target, 100); }

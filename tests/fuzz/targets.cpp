@@ -7,14 +7,23 @@
 #include <cstdlib>
 #include <cstring>
 #include <memory>
+#include <set>
 #include <string>
+
+#include <sys/mman.h>
+#include <unistd.h>
 
 #include "mdhcal.h"
 #include "mdhcal/arm.hpp"
 #include "mdhcal/crc32.hpp"
 #include "offline/base/error.hpp"
+#include "offline/batch/batch.hpp"
 #include "offline/measure/dataset.hpp"
+#include "offline/measure/joint_file.hpp"
 #include "offline/output/blob_writer.hpp"
+#include "offline/output/sign.hpp"
+#include "offline/robot/ur_factory.hpp"
+#include "offline/robot/urdf.hpp"
 #include "tests/fuzz/blob_invariants.hpp"
 
 namespace mdhcal::fuzz {
@@ -132,6 +141,122 @@ void dataset_target(const std::uint8_t* data, std::size_t size) {
   } catch (const InputError&) {
     return;
   }
+}
+
+namespace {
+
+// The bytes as a file: some readers take a path only.
+std::string as_file(const std::uint8_t* data, std::size_t size) {
+  static const int file = memfd_create("fuzz", MFD_CLOEXEC);
+  if (file < 0 || ftruncate(file, 0) != 0) stop("the fuzzer's own file");
+  for (std::size_t done = 0; done < size;) {
+    const ssize_t count = pwrite(file, data + done, size - done, static_cast<off_t>(done));
+    if (count <= 0) stop("the fuzzer's own file");
+    done += static_cast<std::size_t>(count);
+  }
+  return "/proc/self/fd/" + std::to_string(file);
+}
+
+const Geometry& six_joints() {
+  static const Geometry geometry = [] {
+    Geometry six{};
+    six.joint_count = 6;
+    for (std::size_t i = 0; i < 6; ++i) six.joint[i].sign = 1;
+    six.last_T_flange.quaternion[0] = 1.0;
+    return six;
+  }();
+  return geometry;
+}
+
+void require_valid(const offline::Robot& robot) {
+  if (check_geometry(robot.geometry) != Status::ok) stop("a robot that was read is valid");
+}
+
+// Bad input is refused by InputError, and what a form cannot express by Refusal; anything else is a finding.
+template <class Use>
+void refused_or(Use use) {
+  try {
+    use();
+  } catch (const InputError&) {
+    return;
+  } catch (const Refusal&) {
+    return;
+  }
+}
+
+}  // namespace
+
+void urdf_target(const std::uint8_t* data, std::size_t size) {
+  const std::string text(data, data + size);
+  offline::Robot robot;
+  try {
+    robot = offline::robot_from_chain(offline::parse_urdf(text, "fuzz.urdf", "", ""), "fuzz.urdf");
+  } catch (const InputError&) {
+    return;
+  }
+  require_valid(robot);
+  (void)offline::parse_urdf(offline::urdf_text(robot), "again.urdf", "", "");
+  refused_or([&] {
+    const std::string corrected = offline::corrected_urdf(text, "fuzz.urdf", robot, "", "");
+    try {
+      (void)offline::parse_urdf(corrected, "corrected.urdf", "", "");
+    } catch (const InputError&) {
+      stop("a corrected URDF reads back");
+    }
+  });
+}
+
+void kinematics_target(const std::uint8_t* data, std::size_t size) {
+  refused_or([&] {
+    require_valid(offline::robot_from_chain(offline::parse_ros_kinematics(std::string(data, data + size), "fuzz.yaml"), "fuzz.yaml"));
+  });
+}
+
+void ur_calibration_target(const std::uint8_t* data, std::size_t size) {
+  refused_or([&] { require_valid(offline::parse_ur_calibration(std::string(data, data + size), "fuzz.conf", "ur5e")); });
+}
+
+void joints_target(const std::uint8_t* data, std::size_t size) {
+  refused_or([&] {
+    for (const auto& row : offline::read_joint_file(as_file(data, size), six_joints()).rows) {
+      if (!std::all_of(row.q.begin(), row.q.end(), [](double q) { return std::isfinite(q); })) stop("readings are finite");
+    }
+  });
+}
+
+void poses_target(const std::uint8_t* data, std::size_t size) {
+  refused_or([&] {
+    for (const auto& row : offline::read_pose_file(as_file(data, size), six_joints()).rows) {
+      double norm2 = 0;
+      for (const double part : row.pose.quaternion) norm2 += part * part;
+      if (!(std::abs(norm2 - 1) < 1e-9)) stop("rotations are unit quaternions");
+      for (const double part : row.pose.position_m) {
+        if (!std::isfinite(part)) stop("positions are finite");
+      }
+    }
+  });
+}
+
+void manifest_target(const std::uint8_t* data, std::size_t size) {
+  refused_or([&] {
+    std::set<std::string> names;
+    for (const auto& entry : offline::read_manifest(as_file(data, size))) {
+      if (entry.name.empty() || entry.name[0] == '.' || entry.name.find('/') != std::string::npos) stop("a name is one folder's own");
+      if (!names.insert(entry.name).second) stop("each name is there once");
+    }
+  });
+}
+
+void key_target(const std::uint8_t* data, std::size_t size) {
+  const std::string path = as_file(data, size);
+  refused_or([&] {
+    const auto key = offline::read_public_key(path);
+    if (offline::read_secret_key(path).seed != key) stop("a key is read in one way");
+    const std::string text = offline::key_text(key);
+    if (offline::read_public_key(as_file(reinterpret_cast<const std::uint8_t*>(text.data()), text.size())) != key) {
+      stop("a key that was written reads back");
+    }
+  });
 }
 
 }  // namespace mdhcal::fuzz

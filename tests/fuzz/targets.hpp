@@ -21,6 +21,28 @@ void robot_target(const std::uint8_t* data, std::size_t size);
 /// parse_dataset() for a six-joint robot.
 void dataset_target(const std::uint8_t* data, std::size_t size);
 
+/// parse_urdf() and what is made of it: a robot, which is valid; its own URDF, which reads back; the same URDF corrected, which reads
+/// back too.
+void urdf_target(const std::uint8_t* data, std::size_t size);
+
+/// parse_ros_kinematics() and the robot of it, which is valid.
+void kinematics_target(const std::uint8_t* data, std::size_t size);
+
+/// parse_ur_calibration() and the robot of it, which is valid.
+void ur_calibration_target(const std::uint8_t* data, std::size_t size);
+
+/// read_joint_file(), which also reads the candidates of a plan, for a six-joint robot: every reading is finite.
+void joints_target(const std::uint8_t* data, std::size_t size);
+
+/// read_pose_file(), for a six-joint robot: every pose is finite and a unit rotation.
+void poses_target(const std::uint8_t* data, std::size_t size);
+
+/// read_manifest(): every entry's name is a folder's own, and each is there once.
+void manifest_target(const std::uint8_t* data, std::size_t size);
+
+/// read_secret_key() and read_public_key(): both take the same, and what is written of a key reads back.
+void key_target(const std::uint8_t* data, std::size_t size);
+
 /// read_source() of a tracker's export or a controller's log for a six-joint robot, then join() with itself.
 void source_target(const std::uint8_t* data, std::size_t size);
 
