@@ -6,6 +6,7 @@
 #include "offline/base/error.hpp"
 #include "offline/base/folder.hpp"
 #include "offline/batch/batch.hpp"
+#include "offline/identify/mistakes/diagnose.hpp"
 #include "offline/output/result_files.hpp"
 #include "offline/report/write_result.hpp"
 
@@ -28,8 +29,11 @@ std::string calibrate_one(const BatchEntry& entry, const fs::path& folder, const
   Dataset test;
   if (!entry.test.empty()) test = read_dataset(entry.test, robot);
   OutputFolder out(folder, result_names);
-  const Calibration calibration = concluded(calibrate(robot, data, options.calibration, entry.test.empty() ? nullptr : &test));
-  write_result(out, calibration, options.date, options.report);
+  Calibration calibration = calibrate(robot, data, options.calibration, entry.test.empty() ? nullptr : &test);
+  Assessment assessment;
+  assessment.diagnosis = explain_by_mistakes({robot, data, options.calibration}, false, calibration);
+  calibration = concluded(std::move(calibration));
+  write_result(out, calibration, options.date, options.report, assessment);
   out.commit();
   std::string reasons;
   if (!calibration.released()) {

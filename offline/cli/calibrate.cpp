@@ -11,6 +11,7 @@
 #include "offline/cli/import_arguments.hpp"
 #include "offline/cli/messages.hpp"
 #include "offline/cli/robot_argument.hpp"
+#include "offline/identify/mistakes/diagnose.hpp"
 #include "offline/output/result_files.hpp"
 #include "offline/report/write_result.hpp"
 
@@ -22,7 +23,26 @@ struct CalibrateArguments : CalibrationArguments {
   std::size_t resamples = 0;
   std::optional<std::size_t> folds;
   ImportArguments import;  // --tracker and what belongs to it
+  bool diagnose = false;
 };
+
+std::optional<Diagnosis> searched(const Robot& robot, const Dataset& data, const CalibrationOptions& options, bool always,
+                                  Calibration& c) {
+  Progress progress("search for mistakes", verbosity() != Verbosity::quiet);
+  return explain_by_mistakes({robot, data, options}, always, c, progress.callback());
+}
+
+// The calibration; where the measurements do not carry one, the mistake without which they would is said.
+Calibration calibrated(const Robot& robot, const Dataset& data, const CalibrationOptions& options, const Dataset* test) {
+  try {
+    return calibrate(robot, data, options, test);
+  } catch (const Refusal&) {
+    Progress progress("search for mistakes", verbosity() != Verbosity::quiet);
+    const Diagnosis diagnosis = diagnose({robot, data, options}, std::nullopt, progress.callback());
+    if (!diagnosis.named()) throw;
+    throw Refusal(diagnosis.sentence);
+  }
+}
 
 Assessment assess(const CalibrateArguments& arguments, const CalibrationOptions& options, const Robot& robot,
                   const Dataset& data, const Calibration& c) {
@@ -67,8 +87,11 @@ void run_calibrate(const CalibrateArguments& arguments) {
   Dataset test;
   if (!arguments.test.empty()) test = read_dataset(arguments.test, robot);
   OutputFolder folder(arguments.directory, result_names);
-  const Calibration c = concluded(calibrate(robot, data, options, arguments.test.empty() ? nullptr : &test));
-  const Assessment assessment = assess(arguments, options, robot, data, c);
+  Calibration c = calibrated(robot, data, options, arguments.test.empty() ? nullptr : &test);
+  const std::optional<Diagnosis> diagnosis = searched(robot, data, options, arguments.diagnose, c);
+  c = concluded(std::move(c));
+  Assessment assessment = assess(arguments, options, robot, data, c);
+  assessment.diagnosis = diagnosis;
   write_result(folder, c, date, true, assessment);
   folder.commit();
 
@@ -108,6 +131,8 @@ void add_calibrate(CLI::App& app) {
   command->add_option("--bootstrap", arguments->resamples, "Resamples of whole groups for result.json, such as 1000");
   command->add_option("--cross-validate", arguments->folds,
                       "Repeat the calibration in this many folds of whole groups; 0: one group at a time");
+  command->add_flag("--diagnose", arguments->diagnose,
+                    "Search for mistakes in files and options (units, signs, zeros, order, coupling, ...) in any case");
   command->add_option("--date", arguments->date, "Date in the blob, YYYY-MM-DD");
   command->footer(
       "Example:\n  mdhcal calibrate robot.toml nine_poses.csv --test eighteen_poses.csv --base given --tool given -o result");

@@ -14,7 +14,7 @@
 #include "offline/identify/dependence.hpp"
 #include "offline/identify/judging.hpp"
 #include "offline/identify/left_out.hpp"
-#include "offline/identify/mistakes.hpp"
+#include "offline/identify/pose_checks.hpp"
 #include "offline/identify/notes.hpp"
 #include "offline/identify/published_methods.hpp"
 #include "offline/identify/regularized.hpp"
@@ -223,7 +223,6 @@ void identify(Work& work, Calibration& out) {
   out.start = nominal.estimate;
   const bool any_sigma = states_sigma(data);
   if (any_sigma) out.residual_unit_mm = mean_sigma_mm(data, out.training_rows, out.noise_mm);
-  check_simple_mistakes(work.robot, data, out.training_rows, unknowns_asked, nominal.scale * out.residual_unit_mm);
 
   RegularizedFit& result = work.regularized;
   work.penalised = work.options.method == "rpim" || work.options.method == "rpim-train";
@@ -319,13 +318,6 @@ void explain(const Work& work, Calibration& out) {
   const Dataset& data = out.training;
   find_reasons(work.options, out);
   if (work.penalised && work.options.robust) {
-    if (const auto move = find_tracker_move(data, out.training_rows, work.unknowns, work.regularized.fit, out.noise_mm)) {
-      out.reasons.push_back("The tracker, or the robot's foot, seems to have moved before row " +
-                            row_name(data, data.rows[move->first_row_after]) + " (line " +
-                            std::to_string(data.rows[move->first_row_after].line) + "): the rows from there on lie in a frame " +
-                            number(move->shift_mm) + " mm and " + number(move->turn_deg) +
-                            " degrees away. Calibrate from one series, or bring both into one tracker frame first.");
-    }
     if (3 * out.train.outliers.size() > out.training_rows.size()) {
       out.reasons.push_back(std::to_string(out.train.outliers.size()) + " of " + std::to_string(out.training_rows.size()) +
                             " rows lie beyond the outlier threshold of " + number(out.outlier_threshold_mm) +

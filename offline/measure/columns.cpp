@@ -49,7 +49,7 @@ Column Columns::find(const std::string& name, const Unit& unit) {
       }
     }
     if (column.found) csv_.fail_header(i, "found \"" + name + "\" a second time; expected each column once.");
-    column = {i, stated, true};
+    column = {i, stated, true, names[i] != name};
     used_[i] = true;
   }
   return column;

@@ -17,6 +17,7 @@ struct Column {
   std::size_t index = 0;
   Unit unit = plain_number;
   bool found = false;
+  bool stated = false;  ///< the name states the unit
 
   explicit operator bool() const { return found; }
   /// The field of the current row in SI units; InputError if it is not a number of at most `bound` in size.

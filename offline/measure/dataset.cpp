@@ -66,10 +66,15 @@ class Reader {
     const Unit length = length_unit(robot_);
     const Unit angle = angle_unit(robot_);
     q_ = columns_.joints(robot_.geometry, angle, length, "q", "", true);
+    for (const Column& column : q_) {
+      data_.joint_columns.push_back(csv_.names()[column.index]);
+      data_.angles_stated = data_.angles_stated || column.stated;
+    }
     commanded_ = columns_.joints(robot_.geometry, angle, length, "q", "_cmd", false);
     position_ = columns_.find_all({"x", "y", "z"}, length);
     distance_ = columns_.find("distance", length);
     to_ = columns_.find_text("to");
+    data_.lengths_stated = position_.empty() ? distance_.stated : position_.front().stated;
     if (position_.empty() && !distance_) (void)columns_.require("x", length, "with the measured point (or \"distance\")");
     id_ = columns_.find_text("id");
     group_ = columns_.find_text("group");

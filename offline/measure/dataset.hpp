@@ -45,6 +45,9 @@ struct Dataset {
   std::vector<Joints> commanded;
   std::vector<double> temperature;    ///< if the column is there, else empty
   std::vector<std::string> direction; ///< likewise: direction of approach
+  std::vector<std::string> joint_columns; ///< names of the columns of the readings, as in the header
+  bool angles_stated = false;         ///< the names of the joints' columns state their unit
+  bool lengths_stated = false;        ///< likewise x, y, z or distance
   std::vector<std::string> notes;     ///< ignored columns and the like, to be said once
   std::string digest_sha256;          ///< of the file's bytes, lower-case hexadecimal
 };

@@ -131,6 +131,21 @@ Json frame(const Frame<double>& f) {
           {"rotation_matrix", rows}};
 }
 
+Json residual_json(const Residual& r) { return {{"scale_mm", finite(r.scale_mm)}, {"mean_mm", finite(r.mean_mm)}}; }
+
+Json diagnosis_json(const Diagnosis& d) {
+  Json json = {{"named", d.named()}, {"sentence", d.sentence}, {"tried", d.tried}, {"as_given", residual_json(d.as_given)}};
+  json["hypotheses"] = Json::array();
+  for (const Finding& f : d.findings) {
+    json["hypotheses"].push_back({{"kinds", f.kinds},
+                                  {"what", f.what},
+                                  {"cure", f.cure},
+                                  {"residual", residual_json(f.residual)},
+                                  {"offered", f.offered}});
+  }
+  return json;
+}
+
 }  // namespace
 
 std::string result_json(const Calibration& c, const Assessment& assessment) {
@@ -195,6 +210,7 @@ std::string result_json(const Calibration& c, const Assessment& assessment) {
     const RepeatedCrossValidation& cv = *assessment.cross_validation;
     json["cross_validation"] = {{"folds", cv.folds}, {"before", figures(cv.before)}, {"after", figures(cv.after)}};
   }
+  json["diagnosis"] = assessment.diagnosis ? diagnosis_json(*assessment.diagnosis) : Json(nullptr);
   json["dependences"] = Json::array();
   for (const Dependence& d : c.dependences) {
     json["dependences"].push_back({{"quantity", d.quantity},

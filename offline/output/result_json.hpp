@@ -7,6 +7,7 @@
 #include "offline/assess/bootstrap.hpp"
 #include "offline/assess/cross_validation.hpp"
 #include "offline/identify/calibrate.hpp"
+#include "offline/identify/mistakes/diagnosis.hpp"
 
 namespace mdhcal::offline {
 
@@ -14,6 +15,7 @@ namespace mdhcal::offline {
 struct Assessment {
   std::optional<Bootstrap> bootstrap;
   std::optional<RepeatedCrossValidation> cross_validation;
+  std::optional<Diagnosis> diagnosis;
 };
 
 /// A calibration as result.json: figures in millimetres and degrees under keys that say so; every number is

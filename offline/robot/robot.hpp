@@ -42,7 +42,20 @@ struct Robot {
   /// Units in which a file of this robot is written back.
   bool length_in_mm = true;
   bool angle_in_deg = true;
+
+  bool standard = false;  ///< the file's table is in the standard convention
+  std::string text;       ///< the file itself, for read_as(); empty if the robot came from no robot file
 };
+
+/// How to read a robot file's numbers in place of what the file says.
+struct ReadAs {
+  std::optional<bool> standard;
+  std::optional<bool> length_in_mm;
+  std::optional<bool> angle_in_deg;
+};
+
+/// The robot that its file states when it is read another way; nothing if the numbers are then out of range.
+std::optional<Robot> read_as(const Robot& robot, const ReadAs& as);
 
 /// Reads a robot file (TOML, docs/file-formats.md). A standard-convention table is converted exactly, with Hayati's beta where
 /// neighbouring axes are nearly, but not exactly, parallel, so that no length runs away.

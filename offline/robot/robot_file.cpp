@@ -34,7 +34,10 @@ std::string kind_of(const toml::node& node) {
 /// The reader: every method throws InputError at the place of the node that it looks at.
 class Reader {
  public:
-  Reader(const std::string& text, const std::string& path) : path_(path), root_(parse_toml(text, path)) {}
+  Reader(const std::string& text, const std::string& path, const ReadAs& as = {})
+      : path_(path), as_(as), root_(parse_toml(text, path)) {
+    robot_.text = text;
+  }
 
   Robot read();
 
@@ -194,6 +197,7 @@ class Reader {
   void make_expressible();
 
   std::string path_;
+  ReadAs as_;
   toml::table root_;
   Robot robot_;
   Unit length_ = millimetre;
@@ -393,9 +397,10 @@ Robot Reader::read() {
   stem = stem.substr(0, stem.find_last_of('.'));
   robot_.name = text_of(root_, "name", std::string(begin_of(printable(stem), 63)), 63);
   robot_.serial = text_of(root_, "serial", "", 31);
-  standard_ = choice(root_, "convention", {"modified", "standard"}) == 1;
-  robot_.length_in_mm = choice(root_, "length_unit", {"mm", "m"}) == 0;
-  robot_.angle_in_deg = choice(root_, "angle_unit", {"deg", "rad"}) == 0;
+  standard_ = as_.standard.value_or(choice(root_, "convention", {"modified", "standard"}) == 1);
+  robot_.standard = standard_;
+  robot_.length_in_mm = as_.length_in_mm.value_or(choice(root_, "length_unit", {"mm", "m"}) == 0);
+  robot_.angle_in_deg = as_.angle_in_deg.value_or(choice(root_, "angle_unit", {"deg", "rad"}) == 0);
   length_ = robot_.length_in_mm ? millimetre : metre;
   angle_ = robot_.angle_in_deg ? degree : radian;
   robot_.geometry.last_T_flange.quaternion[0] = 1;
@@ -422,6 +427,17 @@ Robot Reader::read() {
 }  // namespace
 
 Robot parse_robot(const std::string& text, const std::string& path) { return Reader(text, path).read(); }
+
+std::optional<Robot> read_as(const Robot& robot, const ReadAs& as) {
+  try {
+    // What was read another way before stays so.
+    const ReadAs all{as.standard.value_or(robot.standard), as.length_in_mm.value_or(robot.length_in_mm),
+                     as.angle_in_deg.value_or(robot.angle_in_deg)};
+    return Reader(robot.text, robot.path, all).read();
+  } catch (const InputError&) {
+    return std::nullopt;
+  }
+}
 
 Robot read_robot(const std::string& path) { return parse_robot(read_file(path, "a robot file"), path); }
 

@@ -3,6 +3,7 @@
 // not crash.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <functional>
 
 #include <nlohmann/json.hpp>
@@ -61,6 +62,17 @@ class BadInputCommand : public testing::Test {
     EXPECT_EQ(names_in(folder_ / "r"), (std::vector<std::string>{"report.html", "residuals.csv", "result.json"}));
   }
 
+  // Exit status 1, diagnosis and cure, a report, and nothing that a controller could use.
+  void expect_unusable(const Outcome& run, const std::string& diagnosis, const std::string& cure) {
+    EXPECT_EQ(run.exit_code, 1) << run.err;
+    EXPECT_NE(run.err.find(diagnosis), std::string::npos) << run.err;
+    EXPECT_NE(run.err.find(cure), std::string::npos) << run.err;
+    const std::vector<std::string> names = names_in(folder_ / "r");
+    EXPECT_EQ(std::count(names.begin(), names.end(), "result.json"), 1);
+    EXPECT_EQ(std::count(names.begin(), names.end(), "calibration.blob"), 0);
+    EXPECT_EQ(std::count(names.begin(), names.end(), "corrected.toml"), 0);
+  }
+
   TemporaryFolder folder_;
 };
 
@@ -98,25 +110,35 @@ TEST_F(BadInputCommand, AllMeasurementsAtOnePoint) {
 
 TEST_F(BadInputCommand, JointsInRadiansReadAsDegrees) {
   simulate("three-parallel");
-  const Outcome run = calibrate([](std::size_t, Row& row) {
+  const auto in_radians = [](std::size_t, Row& row) {
     for (int j = 1; j <= joints; ++j) {
       std::string& q = row["q" + std::to_string(j)];
       q = std::to_string(number(q) / 57.29577951308232);
     }
-  });
-  expect_stop(run, 1, "the joint angles are in radians but are read as degrees", "name the columns q1_rad, q2_rad, ...");
-}
-
-TEST_F(BadInputCommand, JointsInDegreesReadAsRadians) {
-  simulate("three-parallel");
-  expect_stop(calibrate([](std::size_t, Row&) {}, "_rad"), 1, "the joint angles are in degrees but are read as radians",
-              "name the columns q1_deg, q2_deg, ...");
+  };
+  expect_unusable(calibrate(in_radians, ""), "With the joint angles in radians the residual is", "name the columns q1_rad, q2_rad, ...");
+  // A header that states its unit is believed.
+  const Outcome stated = calibrate(in_radians);
+  EXPECT_EQ(stated.exit_code, 1) << stated.err;
+  EXPECT_EQ(stated.err.find("name the columns"), std::string::npos) << stated.err;
 }
 
 TEST_F(BadInputCommand, TwoJointsSwapped) {
   simulate("three-parallel");
-  expect_stop(calibrate([](std::size_t, Row& row) { std::swap(row["q2"], row["q5"]); }), 1,
-              "joints 2 and 5 are swapped", "check the order of the joint columns");
+  expect_unusable(calibrate([](std::size_t, Row& row) { std::swap(row["q2"], row["q5"]); }), "With q2_deg and q5_deg swapped",
+                  "swap the columns q2_deg and q5_deg");
+}
+
+TEST_F(BadInputCommand, TwoJointsReversed) {
+  simulate("spherical-wrist");
+  const Outcome run = calibrate([](std::size_t, Row& row) {
+    for (const char* q : {"q4", "q6"}) row[q] = std::to_string(-number(row[q]));
+  });
+  expect_unusable(run, "With q4_deg and q6_deg reversed the residual is", "set sign = -1 in links 4 and 6");
+  const nlohmann::json result = nlohmann::json::parse(read_bytes(folder_ / "r/result.json"));
+  EXPECT_TRUE(result["diagnosis"]["named"]);
+  EXPECT_LT(result["diagnosis"]["hypotheses"][0]["residual"]["scale_mm"], 0.05);
+  EXPECT_GT(result["diagnosis"]["as_given"]["scale_mm"], 10.0);
 }
 
 TEST_F(BadInputCommand, TrackerMovedBetweenTwoSeries) {
@@ -124,8 +146,14 @@ TEST_F(BadInputCommand, TrackerMovedBetweenTwoSeries) {
   const Outcome run = calibrate([](std::size_t i, Row& row) {
     if (i >= 30) row["x_mm"] = std::to_string(number(row["x_mm"]) + 3.0);
   });
-  expect_stop(run, 1, "The tracker, or the robot's foot, seems to have moved before row 31",
-              "Calibrate from one series, or bring both into one tracker frame first");
+  expect_unusable(run, "the tracker, or the robot's foot, moved before row 31", "calibrate from one series");
+}
+
+TEST_F(BadInputCommand, ASoundJobIsNotAccused) {
+  simulate("three-parallel");
+  const Outcome run = calibrate([](std::size_t, Row&) {}, "_deg", {"--diagnose"});
+  EXPECT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_NE(run.err.find("hypotheses on units, signs, zeros"), std::string::npos) << run.err;
 }
 
 TEST_F(BadInputCommand, ReflectorOnTheLastAxis) {

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "offline/base/error.hpp"
+#include "offline/identify/mistakes/diagnose.hpp"
 #include "offline/robot/vectors.hpp"
 #include "offline/simulate/family.hpp"
 #include "tests/identify/simulated.hpp"
@@ -20,7 +21,8 @@ Simulation arm() { return simulate(family_robot("three-parallel"), arm_options(1
 template <class Error>
 std::string said(const Robot& robot, const Dataset& data, const CalibrationOptions& options = {}) {
   try {
-    const Calibration c = calibrate(robot, data, options);
+    Calibration c = calibrate(robot, data, options);
+    (void)explain_by_mistakes({robot, data, options}, false, c);
     std::string reasons;
     for (const std::string& reason : c.reasons) reasons += reason + ' ';
     if (!reasons.empty()) return reasons;
@@ -63,7 +65,7 @@ TEST(BadInput, JointAnglesInTheWrongUnit) {
   for (Measurement& m : s.train.rows) {
     for (double& q : m.q) q *= 3.14159265358979323846 / 180.0;
   }
-  EXPECT_TRUE(holds(said<Refusal>(s.nominal, s.train), "in radians but are read as degrees"));
+  EXPECT_TRUE(holds(said<Refusal>(s.nominal, s.train), "With the joint angles in radians"));
 }
 
 TEST(BadInput, PositionsInTheWrongUnit) {
@@ -71,13 +73,13 @@ TEST(BadInput, PositionsInTheWrongUnit) {
   for (Measurement& m : s.train.rows) {
     for (double& x : m.position_m) x *= 1e-3;
   }
-  EXPECT_TRUE(holds(said<Refusal>(s.nominal, s.train), "in metres but are read as millimetres"));
+  EXPECT_TRUE(holds(said<Refusal>(s.nominal, s.train), "With the measured positions in metres"));
 }
 
 TEST(BadInput, TwoJointsSwapped) {
   Simulation s = arm();
   for (Measurement& m : s.train.rows) std::swap(m.q[1], m.q[4]);
-  EXPECT_TRUE(holds(said<Refusal>(s.nominal, s.train), "joints 2 and 5 are swapped"));
+  EXPECT_TRUE(holds(said<Refusal>(s.nominal, s.train), "With q2 and q5 swapped"));
 }
 
 TEST(BadInput, TwoJointsSwappedInAFileWithSigma) {
@@ -85,7 +87,7 @@ TEST(BadInput, TwoJointsSwappedInAFileWithSigma) {
   options.state_sigma = true;
   Simulation s = simulate(family_robot("three-parallel"), options);
   for (Measurement& m : s.train.rows) std::swap(m.q[1], m.q[4]);
-  EXPECT_TRUE(holds(said<Refusal>(s.nominal, s.train), "joints 2 and 5 are swapped"));
+  EXPECT_TRUE(holds(said<Refusal>(s.nominal, s.train), "With q2 and q5 swapped"));
 }
 
 // Whichever two joints: named, and if the arm's symmetry hides which two, refused all the same.
@@ -97,7 +99,7 @@ TEST(BadInput, NoSwapOfTwoJointsYieldsAResult) {
         Dataset swapped = s.train;
         for (Measurement& m : swapped.rows) std::swap(m.q[i], m.q[j]);
         const std::string what = said<Refusal>(s.nominal, swapped);
-        EXPECT_TRUE(holds(what, "joints " + std::to_string(i + 1) + " and " + std::to_string(j + 1) + " are swapped"))
+        EXPECT_TRUE(holds(what, "With q" + std::to_string(i + 1) + " and q" + std::to_string(j + 1) + " swapped"))
             << family << ": " << what;
       }
     }
@@ -107,7 +109,7 @@ TEST(BadInput, NoSwapOfTwoJointsYieldsAResult) {
 TEST(BadInput, AJointCountedTheOtherWayRound) {
   Simulation s = arm();
   for (Measurement& m : s.train.rows) m.q[2] = -m.q[2];
-  EXPECT_TRUE(holds(said<Refusal>(s.nominal, s.train), "joint 3 counts the other way round"));
+  EXPECT_TRUE(holds(said<Refusal>(s.nominal, s.train), "With q3 reversed"));
 }
 
 TEST(BadInput, TrackerMovedBetweenTwoSeries) {

@@ -9,6 +9,7 @@
 
 #include "offline/base/error.hpp"
 #include "offline/base/random.hpp"
+#include "offline/identify/mistakes/diagnose.hpp"
 #include "offline/simulate/family.hpp"
 #include "tests/identify/simulated.hpp"
 
@@ -114,9 +115,12 @@ void moves(std::uint64_t count) {
           }
           ++all;
           try {
-            worst = std::max(worst, distance_from_truth_mm(s, calibrate(s.nominal, s.train, {}), 200, seed));
-          } catch (const std::runtime_error& e) {
-            (std::string(e.what()).find("moved before row") != std::string::npos ? named : refused) += 1;
+            Calibration c = calibrate(s.nominal, s.train, {});
+            (void)explain_by_mistakes({s.nominal, s.train, {}}, false, c);
+            if (c.usable()) worst = std::max(worst, distance_from_truth_mm(s, c, 200, seed));
+            else (c.reasons.front().find("moved before row") != std::string::npos ? named : refused) += 1;
+          } catch (const std::runtime_error&) {
+            ++refused;
           }
         }
       }
