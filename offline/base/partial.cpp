@@ -20,7 +20,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr std::string_view digits = "0123456789abcdef";
+constexpr std::string_view name_digits = "0123456789abcdef";
 constexpr std::size_t random_digits = 16;  // 64 bits: 10^6 runs at once meet with a chance of 3e-8
 
 std::string prefix_of(const fs::path& destination) { return '.' + destination.filename().string() + ".mdhcal-partial-"; }
@@ -28,7 +28,7 @@ std::string prefix_of(const fs::path& destination) { return '.' + destination.fi
 std::string random_name(const fs::path& destination) {
   std::random_device source;
   std::string name = prefix_of(destination);
-  for (std::size_t k = 0; k < random_digits; ++k) name += digits[source() % 16U];
+  for (std::size_t k = 0; k < random_digits; ++k) name += name_digits[source() % 16U];
   return name;
 }
 
@@ -48,7 +48,7 @@ void remove_leftovers(const fs::path& destination) {
     const std::string name = entry.path().filename().string();
     if (!name.starts_with(prefix)) continue;
     const std::string tail = name.substr(prefix.size());
-    if (tail.size() != random_digits || tail.find_first_not_of(digits) != std::string::npos) continue;
+    if (tail.size() != random_digits || tail.find_first_not_of(name_digits) != std::string::npos) continue;
     const Descriptor open(::open(entry.path().c_str(), O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC));
     struct stat found = {};
     if (open.get() < 0 || fstat(open.get(), &found) != 0 || found.st_uid != geteuid()) continue;

@@ -24,7 +24,7 @@ std::string hexadecimal(unsigned byte) {
   return {digits[byte >> 4U], digits[byte & 15U]};
 }
 
-[[noreturn]] void fail_at(std::string_view text, std::size_t at, const std::string& path, const std::string& message) {
+[[noreturn]] void refuse_at(std::string_view text, std::size_t at, const std::string& path, const std::string& message) {
   const long line = 1 + std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(at), '\n');
   const std::size_t before = at == 0 ? std::string_view::npos : text.rfind('\n', at - 1);
   const std::size_t start = before == std::string_view::npos ? 0 : before + 1;
@@ -64,15 +64,15 @@ void require_text(std::string_view text, const std::string& path, const std::str
   }
   for (std::size_t at = text.starts_with("\xEF\xBB\xBF") ? 3 : 0; at < text.size();) {
     const unsigned byte = byte_at(text, at);
-    if (byte == 0) fail_at(text, at, path, "Found a zero byte; expected " + expected + " (text in UTF-8).");
+    if (byte == 0) refuse_at(text, at, path, "Found a zero byte; expected " + expected + " (text in UTF-8).");
     const std::size_t size = character_size(text.substr(at));
     if (size == 0) {
-      fail_at(text, at, path, "Found the byte 0x" + hexadecimal(byte) + ", which is not UTF-8 (Latin-1, perhaps); expected " +
+      refuse_at(text, at, path, "Found the byte 0x" + hexadecimal(byte) + ", which is not UTF-8 (Latin-1, perhaps); expected " +
                                   expected + " in UTF-8.");
     }
     if (byte != '\t' && byte != '\n' && byte != '\r' && is_control(text.substr(at, size))) {
       const unsigned code = size == 1 ? byte : byte_at(text, at + 1);
-      fail_at(text, at, path, "Found the control character 0x" + hexadecimal(code) + "; expected " + expected +
+      refuse_at(text, at, path, "Found the control character 0x" + hexadecimal(code) + "; expected " + expected +
                                   " of printable characters.");
     }
     at += size;

@@ -97,10 +97,10 @@ std::string parameter_section(const Calibration& c) {
 
 std::string outlier_section(const Calibration& c) {
   Rows rows{{"row", "set", "line of the file", "error before [mm]", "error after [mm]"}};
-  constexpr std::size_t most_listed = 200;  // four printed pages; residuals.csv marks all of them
+  constexpr std::size_t most_rows = 200;  // four printed pages; residuals.csv marks all of them
   std::size_t outliers = 0;
   for (const RowResult& row : c.rows) {
-    if (!row.outlier || ++outliers > most_listed) continue;
+    if (!row.outlier || ++outliers > most_rows) continue;
     rows.push_back({escaped(row_name(c, row)), row.test ? "held out" : "training",
                     std::to_string(measurement(c, row).line), number_cell(before_norm_mm(row), 4), number_cell(after_norm_mm(row), 4)});
   }
@@ -109,7 +109,7 @@ std::string outlier_section(const Calibration& c) {
     return paragraph("No training row is beyond the outlier threshold of " + threshold +
                      " mm, and no held-out row beyond what the model predicts for it.");
   }
-  const std::string rest = outliers <= most_listed ? "" : " The first " + std::to_string(most_listed) + " of " + std::to_string(outliers) +
+  const std::string rest = outliers <= most_rows ? "" : " The first " + std::to_string(most_rows) + " of " + std::to_string(outliers) +
                                                               "; residuals.csv marks all.";
   return paragraph("Training rows beyond the outlier threshold of " + threshold +
                    " mm, which have no weight in the fit or little, and held-out rows beyond what the model predicts for them. "
