@@ -6,6 +6,7 @@
 #include "offline/base/folder.hpp"
 #include "offline/base/read_file.hpp"
 #include "offline/cli/commands.hpp"
+#include "offline/cli/messages.hpp"
 #include "offline/robot/ur_factory.hpp"
 #include "offline/robot/urdf.hpp"
 
@@ -31,12 +32,23 @@ Format format_of(const std::string& path) {
                                    "kinematics) or .conf (UR calibration).");
 }
 
+Robot from_chain(const Chain& chain, const std::string& path, const std::string& base) {
+  for (const std::string& note : chain.notes) inform(note);
+  Robot robot = robot_from_chain(chain, path);
+  const std::string note = base_frame_note(robot, base);
+  if (!note.empty()) inform(path + ": " + note);
+  return robot;
+}
+
 Robot read(const ConvertArguments& arguments) {
   const std::string& path = arguments.input;
   switch (format_of(path)) {
     case Format::robot: return read_robot(path);
-    case Format::urdf: return robot_from_chain(read_urdf(path, arguments.base, arguments.tip), path);
-    case Format::ros_yaml: return robot_from_chain(parse_ros_kinematics(read_file(path, "ROS kinematics"), path), path);
+    case Format::urdf:
+      return from_chain(read_urdf(path, arguments.base, arguments.tip), path,
+                        arguments.base.empty() ? "the URDF's root link" : "link \"" + arguments.base + '"');
+    case Format::ros_yaml:
+      return from_chain(parse_ros_kinematics(read_file(path, "ROS kinematics"), path), path, "the file's base");
     case Format::ur_calibration: break;
   }
   if (arguments.model.empty()) {

@@ -3,10 +3,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 
 #include "offline/base/error.hpp"
 #include "offline/robot/convention.hpp"
 #include "offline/robot/rotation.hpp"
+#include "offline/robot/units.hpp"
 
 namespace mdhcal::offline {
 
@@ -38,6 +40,24 @@ bool is_identity(const Frame<double>& frame) {
   }
   return std::abs(frame.position_m[0]) <= tolerance && std::abs(frame.position_m[1]) <= tolerance &&
          std::abs(frame.position_m[2]) <= tolerance;
+}
+
+bool has_control_character(const std::string& text) {
+  return std::any_of(text.begin(), text.end(), [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7F; });
+}
+
+// The joints' names where a robot file can state all of them; none where two are the same or one is too long.
+std::array<std::string, max_joints> names_of(const Chain& chain) {
+  std::array<std::string, max_joints> names{};
+  for (std::size_t i = 0; i < chain.joints.size(); ++i) {
+    const std::string& name = chain.joints[i].name;
+    if (name.size() > most_joint_name_bytes || has_control_character(name) ||
+        std::find(names.begin(), names.end(), name) < names.begin() + static_cast<std::ptrdiff_t>(i)) {
+      return {};
+    }
+    names[i] = name;
+  }
+  return names;
 }
 
 }  // namespace
@@ -84,6 +104,20 @@ Frame<double> tip(const Chain& chain, const double* q) {
   return compose(base_T_tip, chain.last_T_tip);
 }
 
+std::string base_frame_note(const Robot& robot, const std::string& base) {
+  if (!robot.tracker_T_base) return {};
+  const Pose<double>& pose = *robot.tracker_T_base;
+  const Vector3 turn = rotation_vector_of({pose.quaternion[0], pose.quaternion[1], pose.quaternion[2], pose.quaternion[3]});
+  char text[400];
+  std::snprintf(text, sizeof text,
+                "The robot's base frame, in which its link 1 is stated and `forward` prints, is not %s: it lies %.6g mm and "
+                "%.6g degrees from it, since modified Denavit-Hartenberg parameters cannot express axis 1 from there. "
+                "[base] holds the way from %s; --frame tracker prints poses against %s.",
+                base.c_str(), mm_per_m * std::hypot(pose.position_m[0], pose.position_m[1], pose.position_m[2]),
+                deg_per_rad * std::hypot(turn[0], turn[1], turn[2]), base.c_str(), base.c_str());
+  return text;
+}
+
 Robot robot_from_chain(const Chain& chain, const std::string& path) {
   const std::size_t n = chain.joints.size();
   if (n == 0 || n > max_joints) {
@@ -103,6 +137,7 @@ Robot robot_from_chain(const Chain& chain, const std::string& path) {
   Robot robot;
   robot.path = path;
   robot.name = chain.name.substr(0, 63);
+  robot.kinematics_hash = chain.kinematics_hash;
   robot.geometry.joint_count = static_cast<std::int32_t>(n);
   for (std::size_t i = 0; i < n; ++i) {
     const ChainJoint& from = chain.joints[i];
@@ -115,6 +150,7 @@ Robot robot_from_chain(const Chain& chain, const std::string& path) {
     joint.max = from.max;
     robot.geometry.link[i] = robot.nominal[i] = modified.links[i];
   }
+  robot.joint_name = names_of(chain);
   robot.geometry.last_T_flange = pose_of(modified.last_T_flange);
   if (!is_identity(modified.origin)) robot.tracker_T_base = pose_of(modified.origin);
   if (check_geometry(robot.geometry) != Status::ok) {
@@ -126,6 +162,7 @@ Robot robot_from_chain(const Chain& chain, const std::string& path) {
 Chain chain_of(const Robot& robot, bool with_base) {
   Chain chain;
   chain.name = robot.name;
+  chain.kinematics_hash = robot.kinematics_hash;
   Frame<double> before =
       with_base && robot.tracker_T_base ? frame_of(*robot.tracker_T_base) : identity_frame();
   for (std::size_t i = 0; i < static_cast<std::size_t>(robot.geometry.joint_count); ++i) {
@@ -137,7 +174,7 @@ Chain chain_of(const Robot& robot, bool with_base) {
     }
     // Rot_z(theta + s q) Trans_z(d) Ry(beta) = [Rot_z(theta) Trans_z(d)] [turn or slide by q along s z] [Ry(beta)]
     ChainJoint out;
-    out.name = "joint_" + std::to_string(i + 1);
+    out.name = robot.joint_name[i].empty() ? "joint_" + std::to_string(i + 1) : robot.joint_name[i];
     out.kind = joint.kind;
     out.axis = {0, 0, joint.sign < 0 ? -1.0 : 1.0};
     out.parent_T_joint = compose(before, compose(compose(turn_x(link.alpha_rad), shift(link.a_m, 0, 0)),

@@ -25,6 +25,8 @@ struct Chain {
   std::string name;
   std::vector<ChainJoint> joints;
   Frame<double> last_T_tip{};
+  std::string kinematics_hash;     ///< of a UR's factory calibration, where its file states it
+  std::vector<std::string> notes;  ///< what was not taken as it stands, to be said once
 };
 
 /// The identity transform.
@@ -40,6 +42,9 @@ Frame<double> frame_of_xyz_rpy(const Vector3& xyz_m, const Vector3& rpy_rad);
 
 /// base_T_tip at the readings q [rad] or [m], one a joint.
 Frame<double> tip(const Chain& chain, const double* q);
+
+/// What is to be said about a robot's base frame against the chain's: empty if they are the same.
+std::string base_frame_note(const Robot& robot, const std::string& base);
 
 /// The chain as a robot in the modified convention, exact for every chain. Where link 1 cannot express the way to
 /// the first axis, tracker_T_base holds the rest of it: chain base = tracker frame.

@@ -43,6 +43,15 @@ Transform operator*(const Transform& a, const Transform& b) {
   return c;
 }
 
+Transform inverse(const Transform& t) {
+  Transform out;
+  for (std::size_t row = 0; row < 3; ++row) {
+    for (std::size_t col = 0; col < 3; ++col) out.axis[col][row] = t.axis[row][col];
+  }
+  out.position = scaled(rotate(out, t.position), -1);
+  return out;
+}
+
 Transform screw_z(Real theta, Real d) {
   const Real s = std::sin(theta), c = std::cos(theta);
   return {{{{c, s, 0}, {-s, c, 0}, {0, 0, 1}}}, {0, 0, d}};
@@ -141,25 +150,47 @@ struct Builder {
   }
 };
 
+// The least motion that brings axis 1 from where link 1 can express it to where it is. Rot_x(alpha) Trans_x(a) Rot_z Trans_z
+// reaches the axes through (a, 0, 0) across x: what is left is a tilt about y'' = Rot_x(alpha) e_y and a shift along it.
+Transform origin_of(const Transform& first) {
+  constexpr Real tolerance = Real{1e-12L};
+  const Vector& u = first.axis[2];
+  const Real across = std::hypot(u[1], u[2]);
+  // Nearly along x, alpha is not defined: the base frame then lies on the axis itself.
+  if (across < Real{0.5L}) return first;
+  const Vector x{1, 0, 0};
+  const Vector w{0, u[1] / across, u[2] / across};
+  const Vector y = cross(w, x);
+  const Real shift = dot(first.position, y);
+  Transform origin;
+  if (std::abs(u[0]) <= tolerance && std::abs(shift) <= tolerance) return origin;
+  for (std::size_t k = 0; k < 3; ++k) {
+    // Each unit vector turned about y by the angle of sine u_x and cosine `across`, which takes w to u.
+    Vector e{};
+    e[k] = 1;
+    const Real along_x = dot(e, x) * across + dot(e, w) * u[0];
+    const Real along_w = dot(e, w) * across - dot(e, x) * u[0];
+    origin.axis[k] = sum(sum(scaled(x, along_x), dot(e, y), y), along_w, w);
+  }
+  // The joint's own origin moves by the shift alone.
+  origin.position = sum(first.position, -1, rotate(origin, sum(first.position, -shift, y)));
+  return origin;
+}
+
 }  // namespace
 
 ModifiedChain mdh_from_chain(std::span<const Frame<double>> fixed) {
   Builder builder;
   Transform first = from_frame(fixed[0]);
-  Transform origin;
-  // Rot_x(alpha) Trans_x(a) Rot_z Trans_z reaches the axes through (a, 0, 0) across x.
+  const Transform origin = origin_of(first);
+  first = inverse(origin) * first;
   const Vector& u = first.axis[2];
   const Real alpha = std::atan2(-u[1], u[2]);
   const Vector y{0, std::cos(alpha), std::sin(alpha)};
-  constexpr Real tolerance = Real{1e-12L};
-  if (std::abs(u[0]) > tolerance || std::abs(dot(first.position, y)) > tolerance) {
-    origin = first;
-  } else {
-    builder.before.alpha = alpha;
-    builder.before.a = first.position[0];
-    builder.before.next_d = dot(first.position, u);
-    builder.before.next_theta = std::atan2(dot(first.axis[0], y), first.axis[0][0]);
-  }
+  builder.before.alpha = alpha;
+  builder.before.a = first.position[0];
+  builder.before.next_d = dot(first.position, u);
+  builder.before.next_theta = std::atan2(dot(first.axis[0], y), first.axis[0][0]);
   const std::size_t count = fixed.size() - 1;
   for (std::size_t i = 1; i < count; ++i) {
     const Transform turn = screw_z(builder.before.next_theta, builder.before.next_d);

@@ -24,8 +24,9 @@ struct StandardLink {
 struct ModifiedChain {
   std::vector<Link> links;
   Frame<double> last_T_flange;
-  /// What link 1 cannot express of the way from the base to the first axis: the identity if the x component of the
-  /// axis is zero and the axis meets the base's x axis.
+  /// What link 1 cannot express of the way from the base to the first axis, the least motion that does: the identity if
+  /// the x component of the axis is zero and the axis meets the base's x axis. A base that is 1e-5 rad off such a place
+  /// gives an origin of 1e-5 rad, so that poses stay where they were.
   Frame<double> origin;
 };
 

@@ -14,10 +14,15 @@ namespace mdhcal::offline {
 using Vector3 = std::array<double, 3>;
 using Joints = std::array<double, max_joints>;  ///< readings [rad] or [m]
 
+/// The longest joint_name [bytes].
+inline constexpr std::size_t most_joint_name_bytes = 63;
+
 /// A point on the flange that a reflector or tool defines, in the flange frame [m].
 struct TargetPoint {
   std::string name;      ///< the `target` column's word; at most 15 bytes
   Vector3 flange_p_m{};
+  /// How the probe that measures rotations there is turned on the flange (flange_R_probe); not in the blob.
+  std::optional<std::array<double, 4>> quaternion{};
 };
 
 /// A robot as its file states it, in SI units and the modified convention, whatever the file used.
@@ -32,7 +37,14 @@ struct Robot {
   /// The nominal links. Equal to geometry.link unless the file states `nominal` tables (corrected.toml does).
   std::array<Link, max_joints> nominal{};
 
+  /// joint_name: what other systems call each joint, for columns of measurements; empty where none is stated.
+  std::array<std::string, max_joints> joint_name{};
+
+  /// kinematics_hash: which factory calibration of a UR arm this is; kept from and for its ROS driver's file.
+  std::string kinematics_hash;
+
   std::optional<Vector3> tool_p_m;                 ///< [tool]: nominal target point in the flange frame
+  std::optional<std::array<double, 4>> tool_quaternion;  ///< [tool]: the turn of its probe, as TargetPoint's
   std::optional<Pose<double>> tracker_T_base;      ///< [base]
   std::vector<TargetPoint> targets;                ///< [[target]]
 

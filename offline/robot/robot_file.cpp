@@ -187,8 +187,10 @@ class Reader {
   }
 
   Pose<double> pose(const toml::table& table, const std::string& where) const;
+  TargetPoint target(const toml::table& table, const std::string& where) const;
   Link link(const toml::table& table, const std::string& where, double length_bound) const;
   void read_joint(const toml::table& table, std::size_t index);
+  void read_joint_name(const toml::table& table, const std::string& where, std::size_t index);
   void read_links();
   void read_couplings();
   void read_targets();
@@ -205,8 +207,24 @@ class Reader {
   bool standard_ = false;
 };
 
+// A point and, where it is stated, the turn of its probe; the name is the caller's.
+TargetPoint Reader::target(const toml::table& table, const std::string& where) const {
+  (void)point(table, where, true);
+  const Pose<double> stated = pose(table, where);
+  TargetPoint out{"", {stated.position_m[0], stated.position_m[1], stated.position_m[2]}, {}};
+  if (table.contains("rxryrz") || table.contains("quaternion")) {
+    const double* q = stated.quaternion;
+    out.quaternion = {q[0], q[1], q[2], q[3]};
+  }
+  return out;
+}
+
 Pose<double> Reader::pose(const toml::table& table, const std::string& where) const {
-  allow(table, where, {"xyz", "rxryrz", "quaternion"});
+  if (where.starts_with("[[target]]")) {
+    allow(table, where, {"name", "xyz", "rxryrz", "quaternion"});
+  } else {
+    allow(table, where, {"xyz", "rxryrz", "quaternion"});
+  }
   const Vector3 xyz = point(table, where, false);
   std::array<double, 4> q{1, 0, 0, 0};
   const toml::node* vector = table.get("rxryrz");
@@ -262,6 +280,16 @@ void Reader::read_joint(const toml::table& table, std::size_t index) {
   }
 }
 
+void Reader::read_joint_name(const toml::table& table, const std::string& where, std::size_t index) {
+  const std::string name = text_of(table, "joint_name", "", most_joint_name_bytes);
+  const auto end = robot_.joint_name.begin() + static_cast<std::ptrdiff_t>(index);
+  if (!name.empty() && std::find(robot_.joint_name.begin(), end, name) != end) {
+    fail(table.get("joint_name")->source(), where + " repeats the joint_name " + in_quotes(name) +
+                                                "; expected each name once.");
+  }
+  robot_.joint_name[index] = name;
+}
+
 void Reader::read_links() {
   const auto tables = sections("link", max_joints);
   if (tables.empty()) throw InputError(path_, 1, 1, "Found no section [[link]]; expected one a joint, base to flange.");
@@ -271,8 +299,9 @@ void Reader::read_links() {
   for (std::size_t i = 0; i < tables.size(); ++i) {
     const toml::table& table = *tables[i];
     const std::string where = "[[link]] " + std::to_string(i + 1);
-    allow(table, where, {"joint", "alpha", "a", "d", "theta", "beta", "sign", "min", "max", "nominal"});
+    allow(table, where, {"joint", "alpha", "a", "d", "theta", "beta", "sign", "min", "max", "joint_name", "nominal"});
     read_joint(table, i);
+    read_joint_name(table, where, i);
     robot_.geometry.link[i] = link(table, where, length_bound);
     robot_.nominal[i] = robot_.geometry.link[i];
     for (const std::string_view key : {"beta", "nominal"}) {
@@ -317,16 +346,16 @@ void Reader::read_targets() {
   for (std::size_t k = 0; k < tables.size(); ++k) {
     const toml::table& table = *tables[k];
     const std::string where = "[[target]] " + std::to_string(k + 1);
-    allow(table, where, {"name", "xyz"});
-    TargetPoint target{text_of(table, "name", "", 15), point(table, where, true)};
+    TargetPoint point = target(table, where);
+    point.name = text_of(table, "name", "", 15);
     for (const TargetPoint& other : robot_.targets) {
-      if (other.name == target.name) {
+      if (other.name == point.name) {
         const toml::node* name = table.get("name");
         fail(name != nullptr ? name->source() : table.source(),
-             where + " repeats the name " + in_quotes(target.name) + "; expected each target once.");
+             where + " repeats the name " + in_quotes(point.name) + "; expected each target once.");
       }
     }
-    robot_.targets.push_back(std::move(target));
+    robot_.targets.push_back(std::move(point));
   }
 }
 
@@ -391,12 +420,13 @@ void Reader::make_expressible() {
 
 Robot Reader::read() {
   allow(root_, "", {"name", "serial", "convention", "length_unit", "angle_unit", "link", "coupling", "flange", "tool",
-                    "base", "target", "prior"});
+                    "base", "target", "prior", "kinematics_hash"});
   robot_.path = path_;
   std::string stem = path_.substr(path_.find_last_of('/') + 1);
   stem = stem.substr(0, stem.find_last_of('.'));
   robot_.name = text_of(root_, "name", std::string(begin_of(printable(stem), 63)), 63);
   robot_.serial = text_of(root_, "serial", "", 31);
+  robot_.kinematics_hash = text_of(root_, "kinematics_hash", "", 127);
   standard_ = as_.standard.value_or(choice(root_, "convention", {"modified", "standard"}) == 1);
   robot_.standard = standard_;
   robot_.length_in_mm = as_.length_in_mm.value_or(choice(root_, "length_unit", {"mm", "m"}) == 0);
@@ -409,8 +439,9 @@ Robot Reader::read() {
   if (const toml::table* flange = section("flange")) robot_.geometry.last_T_flange = pose(*flange, "[flange]");
   if (const toml::table* base = section("base")) robot_.tracker_T_base = pose(*base, "[base]");
   if (const toml::table* tool = section("tool")) {
-    allow(*tool, "[tool]", {"xyz"});
-    robot_.tool_p_m = point(*tool, "[tool]", true);
+    const TargetPoint point = target(*tool, "[tool]");
+    robot_.tool_p_m = point.flange_p_m;
+    robot_.tool_quaternion = point.quaternion;
   }
   read_targets();
   read_priors();

@@ -35,6 +35,7 @@ class Writer {
   std::string write() {
     line("name", toml_string(robot_.name));
     if (!robot_.serial.empty()) line("serial", toml_string(robot_.serial));
+    if (!robot_.kinematics_hash.empty()) line("kinematics_hash", toml_string(robot_.kinematics_hash));
     line("convention", "\"modified\"");
     line("length_unit", toml_string(std::string(length_.name)));
     line("angle_unit", toml_string(std::string(angle_.name)));
@@ -47,12 +48,14 @@ class Writer {
     if (robot_.tool_p_m) {
       text_ += "[tool]\n";
       line("xyz", array_of(*robot_.tool_p_m, length_));
+      if (robot_.tool_quaternion) write_rotation(*robot_.tool_quaternion);
     }
     if (robot_.tracker_T_base) write_pose("base", *robot_.tracker_T_base);
     for (const TargetPoint& target : robot_.targets) {
       text_ += "[[target]]\n";
       line("name", toml_string(target.name));
       line("xyz", array_of(target.flange_p_m, length_));
+      if (target.quaternion) write_rotation(*target.quaternion);
     }
     if (!robot_.prior.empty()) text_ += "[prior]\n";
     for (const auto& [name, sd] : robot_.prior) {
@@ -77,6 +80,7 @@ class Writer {
     const Link& nominal = robot_.nominal[i];
     text_ += "[[link]]\n";
     if (joint.kind == JointKind::prismatic) line("joint", "\"prismatic\"");
+    if (!robot_.joint_name[i].empty()) line("joint_name", toml_string(robot_.joint_name[i]));
     line("alpha", number(link.alpha_rad, angle_));
     line("a", number(link.a_m, length_));
     line("d", number(link.d_m, length_));
@@ -101,11 +105,14 @@ class Writer {
     line("ratio", number(ratio, coupling_unit(unit_of_reading(of), unit_of_reading(by))));
   }
 
-  // The rotation vector where it leads back to the same bits, else the quaternion itself.
   void write_pose(const std::string& section, const Pose<double>& pose) {
     text_ += '[' + section + "]\n";
     line("xyz", array_of(pose.position_m, length_));
-    const std::array<double, 4> q{pose.quaternion[0], pose.quaternion[1], pose.quaternion[2], pose.quaternion[3]};
+    write_rotation({pose.quaternion[0], pose.quaternion[1], pose.quaternion[2], pose.quaternion[3]});
+  }
+
+  // The rotation vector where it leads back to the same bits, else the quaternion itself.
+  void write_rotation(const std::array<double, 4>& q) {
     Vector3 vector = rotation_vector_of(q);
     for (double& component : vector) component = angle_.expressible(component);
     const std::array<double, 4> again = quaternion_of(vector);

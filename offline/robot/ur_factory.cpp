@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "offline/robot/ur_factory.hpp"
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
@@ -26,6 +27,9 @@ constexpr std::size_t ur_joints = 6;
 constexpr std::size_t most_kinematics_bytes = std::size_t{1} << 20;
 constexpr std::array<const char*, ur_joints> ur_names{"shoulder", "upper_arm", "forearm",
                                                       "wrist_1",  "wrist_2",   "wrist_3"};
+// What the ROS driver calls the joints in its joint states.
+constexpr std::array<const char*, ur_joints> ur_joint_names{"shoulder_pan_joint", "shoulder_lift_joint", "elbow_joint",
+                                                            "wrist_1_joint",      "wrist_2_joint",       "wrist_3_joint"};
 constexpr std::array<const char*, 6> coordinates{"x", "y", "z", "roll", "pitch", "yaw"};
 
 // The lengths by which the models differ: d1, a2, a3, d4, d5, d6 [m]. All share the twists. From Universal Robots' support
@@ -105,6 +109,20 @@ void refuse_repeats(const YAML::Node& map, const std::string& path) {
     throw InputError(path, mark.line + 1, mark.column + 1,
                      "Found \"" + entry.first.Scalar() + "\" a second time; expected each key once.");
   }
+}
+
+// As it stands where nothing in it means something to YAML, else in quotes.
+std::string yaml_text(const std::string& text) {
+  const auto plain = [](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '.' || c == '-';
+  };
+  if (std::all_of(text.begin(), text.end(), plain) && text.front() != '-' && text.front() != '.') return text;
+  std::string out = "\"";
+  for (const char c : text) {
+    if (c == '"' || c == '\\') out += '\\';
+    out += c;
+  }
+  return out + '"';
 }
 
 double coordinate(const YAML::Node& joint, const std::string& name, const char* key, const std::string& path) {
@@ -190,9 +208,18 @@ Chain parse_ros_kinematics(const std::string& text, const std::string& path) {
                        '"' + name + "\" is not a map; expected x, y, z, roll, pitch and yaw.");
     }
     ChainJoint joint;
-    joint.name = name;
+    joint.name = ur ? ur_joint_names[chain.joints.size()] : name;
     joint.parent_T_joint = frame_of_node(node, name, path);
     chain.joints.push_back(joint);
+  }
+  const YAML::Node hash = kinematics["hash"];
+  if (hash) {
+    if (!hash.IsScalar() || hash.Scalar().size() > 127 ||
+        std::any_of(hash.Scalar().begin(), hash.Scalar().end(), [](char c) { return static_cast<unsigned char>(c) < 0x20; })) {
+      throw InputError(path, hash.Mark().line + 1, hash.Mark().column + 1,
+                       "\"hash\" is not a line of at most 127 bytes; expected what names the factory calibration.");
+    }
+    chain.kinematics_hash = hash.Scalar();
   }
   const YAML::Node flange = kinematics["flange"];
   chain.last_T_tip = flange ? frame_of_node(flange, "flange", path) : identity_frame();
@@ -264,7 +291,8 @@ std::string ros_kinematics_text(const Robot& robot) {
       throw Refusal("joint " + std::to_string(i + 1) + " slides, which the kinematics form cannot express");
     }
     const Frame<double> turn = joint.axis[2] < 0 ? over : identity_frame();
-    entry(chain.joints.size() == ur_joints ? ur_names[i] : joint.name,
+    const bool usable = joint.name != "flange" && joint.name != "hash" && yaml_text(joint.name) == joint.name;
+    entry(chain.joints.size() == ur_joints ? ur_names[i] : usable ? joint.name : "joint_" + std::to_string(i + 1),
           compose(compose(before, joint.parent_T_joint), turn));
     before = turn;  // its own inverse
   }
@@ -273,6 +301,7 @@ std::string ros_kinematics_text(const Robot& robot) {
   for (std::size_t k = 0; k < 9; ++k) differs |= std::abs(flange.rotation[k] - identity_frame().rotation[k]) > 0;
   for (const double coordinate : flange.position_m) differs |= std::abs(coordinate) > 0;
   if (differs) entry("flange", flange);
+  if (!robot.kinematics_hash.empty()) text += "  hash: " + yaml_text(robot.kinematics_hash) + '\n';
   return text;
 }
 

@@ -118,12 +118,31 @@ class Urdf {
     out.axis = axis(joint);
     const pugi::xml_node limit = joint.child("limit");
     if (limit && type != "continuous") {
-      out.has_min = out.has_max = true;  // URDF's default of either limit is 0
-      out.min = number(limit, "lower", 0);
-      out.max = number(limit, "upper", 0);
+      out.min = limit_of(limit, "lower");  // URDF's default of either limit is 0
+      out.max = limit_of(limit, "upper");
       if (!(out.min <= out.max)) fail(limit, "The lower limit is above the upper one; expected lower <= upper.");
+      // What the library calls a reading ends there: beyond, a limit is a way of stating none.
+      out.has_min = out.min >= -max_reading;
+      out.has_max = out.max <= max_reading;
+      if (!(std::abs(out.min) > 0) && !(std::abs(out.max) > 0)) out.has_min = out.has_max = false;
+      if (!out.has_min) out.min = 0;
+      if (!out.has_max) out.max = 0;
     }
     return out;
+  }
+
+  // Where limits are stated and none are taken.
+  std::string limits_note(pugi::xml_node joint, const ChainJoint& moving) const {
+    const pugi::xml_node limit = joint.child("limit");
+    if (!limit || attribute(joint, "type") == "continuous" || (moving.has_min && moving.has_max)) return {};
+    const double lower = limit_of(limit, "lower"), upper = limit_of(limit, "upper");
+    const bool zero = !(std::abs(lower) > 0) && !(std::abs(upper) > 0);
+    return path_ + ":" + std::to_string(line_of(limit.offset_debug())) + ": joint \"" + moving.name + "\" has the limits " +
+           shortest_decimal(lower) + " and " + shortest_decimal(upper) +
+           (zero ? ", as CAD exporters write where they know none: it is read without limits. State min and max in the "
+                   "robot file."
+                 : ", beyond what any joint reads: " + std::string(moving.has_min || moving.has_max ? "the far one is" : "they are") +
+                       " no limit.");
   }
 
  private:
@@ -144,9 +163,22 @@ class Urdf {
     require_text(text_, path_, "a URDF");
   }
 
+  long line_of(std::ptrdiff_t offset) const {
+    const auto end = text_.begin() + std::clamp<std::ptrdiff_t>(offset, 0, static_cast<std::ptrdiff_t>(text_.size()));
+    return 1 + std::count(text_.begin(), end, '\n');
+  }
+
+  // An infinite limit is none, and is written by some.
+  double limit_of(pugi::xml_node limit, const char* key) const {
+    const std::string_view text = limit.attribute(key).as_string();
+    if (text == "inf" || text == "+inf" || text == "Infinity") return HUGE_VAL;
+    if (text == "-inf" || text == "-Infinity") return -HUGE_VAL;
+    return number(limit, key, 0);
+  }
+
   [[noreturn]] void fail(std::ptrdiff_t offset, const std::string& message) const {
     const auto end = text_.begin() + std::clamp<std::ptrdiff_t>(offset, 0, static_cast<std::ptrdiff_t>(text_.size()));
-    const long line = 1 + std::count(text_.begin(), end, '\n');
+    const long line = line_of(offset);
     const auto start = std::find(std::make_reverse_iterator(end), text_.rend(), '\n').base();
     throw InputError(path_, line, 1 + (end - start), message);
   }
@@ -338,6 +370,8 @@ Chain parse_urdf(const std::string& text, const std::string& path, const std::st
     if (!urdf.moves(joint)) continue;
     ChainJoint moving = urdf.moving(joint);
     moving.parent_T_joint = since;
+    const std::string note = urdf.limits_note(joint, moving);
+    if (!note.empty()) chain.notes.push_back(note);
     chain.joints.push_back(moving);
     since = identity_frame();
   }
@@ -368,7 +402,8 @@ std::string urdf_text(const Robot& robot) {
     const bool limited = joint.has_min || joint.has_max;
     const bool prismatic = joint.kind == JointKind::prismatic;
     const std::string child = "link_" + std::to_string(i + 1);
-    pugi::xml_node node = append_joint(root, joint.name, prismatic ? "prismatic" : (limited ? "revolute" : "continuous"),
+    const bool taken = joint.name == "base" || joint.name == "flange_joint" || joint.name == "tool_joint";
+    pugi::xml_node node = append_joint(root, taken ? "joint_" + std::to_string(i + 1) : joint.name, prismatic ? "prismatic" : (limited ? "revolute" : "continuous"),
                                        parent, child, joint.parent_T_joint);
     set_attribute(node.append_child("axis"), "xyz", joint.axis[2] < 0 ? "0 0 -1" : "0 0 1");
     if (limited || prismatic) {

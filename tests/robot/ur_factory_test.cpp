@@ -155,6 +155,18 @@ TEST(UrFactory, KinematicsWrittenAreReadBackWithTheSamePoses) {
   }
 }
 
+// The hash by which the driver knows the arm's own calibration is kept on the way through a robot file, in any style.
+TEST(UrFactory, TheCalibrationsHashIsKept) {
+  for (const char* hash : {"calib_4890363623803256388", "\"calib: 1\"", "12"}) {
+    const std::string text = "kinematics:\n  one: {x: 0, y: 0, z: 0.1, roll: 0, pitch: 0, yaw: 0}\n  hash: " + std::string(hash) + '\n';
+    const Robot robot = robot_from_chain(parse_ros_kinematics(text, "k.yaml"), "k.yaml");
+    const Robot again = parse_robot(write_robot(robot), "r.toml");
+    EXPECT_EQ(again.kinematics_hash, robot.kinematics_hash);
+    const std::string written = ros_kinematics_text(again);
+    EXPECT_NE(written.find("  hash: " + std::string(hash) + '\n'), std::string::npos) << written;
+  }
+}
+
 TEST(RollPitchYaw, HoldsThroughTheSingularPitch) {
   Random random(4);
   for (const double off : {0.0, 1e-12, 1e-9, 1e-6, 1e-3, 1.0}) {

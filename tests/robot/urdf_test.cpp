@@ -203,6 +203,71 @@ TEST(Urdf, AsciiIsReadWhateverItsDeclarationSays) {
   EXPECT_EQ(parse_urdf(utf8, "a.urdf", "", "").name, "caf\xC3\xA9");
 }
 
+std::string one_joint(const std::string& origin, const std::string& limit) {
+  return "<robot name=\"one\"><link name=\"b\"/><link name=\"t\"/><joint name=\"swing\" type=\"revolute\"><parent link=\"b\"/>"
+         "<child link=\"t\"/><origin " + origin + "/><axis xyz=\"0 0 1\"/>" + limit + "</joint></robot>";
+}
+
+// Zero limits are those of an exporter that knew none; limits beyond every reading are none. Both are said, with the joint.
+TEST(Urdf, LimitsThatAreNoneAreReadAsNoneAndSaid) {
+  struct Case {
+    const char* limit;
+    bool has_min, has_max, said;
+  };
+  for (const Case& each : {Case{"<limit lower='0' upper='0' effort='0' velocity='0'/>", false, false, true},
+                           Case{"<limit effort='0' velocity='0'/>", false, false, true},
+                           Case{"<limit lower='-1e+16' upper='1e+16'/>", false, false, true},
+                           Case{"<limit lower='-1' upper='1.7976931348623157e+308'/>", true, false, true},
+                           Case{"<limit lower='-inf' upper='inf'/>", false, false, true},
+                           Case{"<limit lower='0' upper='1'/>", true, true, false}, Case{"", false, false, false}}) {
+    const Chain chain = parse_urdf(one_joint("xyz='0 0 1'", each.limit), "one.urdf", "", "");
+    const Robot robot = robot_from_chain(chain, "one.urdf");
+    EXPECT_EQ(robot.geometry.joint[0].has_min == 1, each.has_min) << each.limit;
+    EXPECT_EQ(robot.geometry.joint[0].has_max == 1, each.has_max) << each.limit;
+    ASSERT_EQ(chain.notes.size(), each.said ? 1U : 0U) << each.limit;
+    if (each.said) EXPECT_NE(chain.notes[0].find("one.urdf:1: joint \"swing\""), std::string::npos) << chain.notes[0];
+  }
+}
+
+// A first joint that is a little off what link 1 can express leaves the robot's base frame a little off the root link: poses
+// in the base frame differ by as little, and what they differ by is in [base] and said.
+TEST(Urdf, TheBaseFrameStaysWhereTheRootLinkIs) {
+  Random random(21);
+  for (int k = 0; k < 200; ++k) {
+    const double size = std::pow(10.0, random.uniform(-9, -1));
+    Frame<double> off = frame_of_xyz_rpy({0, 0, 0.4}, {3.1416, 0, 0});
+    off = compose(off, frame_of_xyz_rpy({size * random.normal(), size * random.normal(), 0},
+                                        {size * random.normal(), size * random.normal(), random.uniform(-3, 3)}));
+    Chain chain;
+    for (int j = 0; j < 3; ++j) {
+      ChainJoint joint;
+      joint.parent_T_joint = j == 0 ? off : frame_of_xyz_rpy({0.1, 0.3, 0.2}, {1.5707963, 0.1 * j, 0});
+      chain.joints.push_back(joint);
+    }
+    chain.last_T_tip = frame_of_xyz_rpy({0, 0.2, 0.5}, {0, 0, 0});
+    const Robot robot = robot_from_chain(chain, "r.urdf");
+    const double q[3] = {random.uniform(-3, 3), random.uniform(-3, 3), random.uniform(-3, 3)};
+    Arm<double> made{};
+    Pose<double> pose{};
+    ASSERT_EQ(make_arm(robot.geometry, made), Status::ok);
+    ASSERT_EQ(forward(made, q, pose), Status::ok);
+    const Frame<double> base = robot.tracker_T_base ? frame_of(*robot.tracker_T_base) : identity_frame();
+    const Frame<double> truth = tip(chain, q), exact = compose(base, frame_of(pose));
+    for (std::size_t i = 0; i < 3; ++i) {
+      EXPECT_NEAR(exact.position_m[i], truth.position_m[i], 1e-12);
+      EXPECT_NEAR(pose.position_m[i], truth.position_m[i], 20 * size + 1e-12) << "size " << size;
+    }
+    EXPECT_EQ(base_frame_note(robot, "base_link").empty(), !robot.tracker_T_base.has_value());
+  }
+}
+
+TEST(Urdf, JointNamesGoIntoTheRobotFileAndBack) {
+  const Robot robot = robot_from_chain(parse_urdf(one_joint("xyz='0 0 1'", ""), "one.urdf", "", ""), "one.urdf");
+  EXPECT_EQ(robot.joint_name[0], "swing");
+  EXPECT_EQ(parse_robot(write_robot(robot), "one.toml").joint_name[0], "swing");
+  EXPECT_NE(urdf_text(robot).find("name=\"swing\""), std::string::npos);
+}
+
 struct Malformed {
   const char* what;
   const char* text;
