@@ -26,6 +26,7 @@ std::vector<BatchEntry> slice_of(const std::vector<BatchEntry>& entries, std::si
 
 struct BatchOptions {
   CalibrationOptions calibration;
+  std::string rotation;      ///< convention of the measurements' rotations (read_dataset())
   std::string date;          ///< for the blobs
   bool report = false;       ///< also write report.html
   bool redo = false;         ///< also those that are done

@@ -25,9 +25,9 @@ bool is_done(const fs::path& folder, bool with_report) {
 // Why the result is not used; empty if it is.
 std::string calibrate_one(const BatchEntry& entry, const fs::path& folder, const BatchOptions& options) {
   const Robot robot = read_robot(entry.robot);
-  const Dataset data = read_dataset(entry.measurements, robot);
+  const Dataset data = read_dataset(entry.measurements, robot, options.rotation);
   Dataset test;
-  if (!entry.test.empty()) test = read_dataset(entry.test, robot);
+  if (!entry.test.empty()) test = read_dataset(entry.test, robot, options.rotation);
   OutputFolder out(folder, result_names);
   Calibration calibration = calibrate(robot, data, options.calibration, entry.test.empty() ? nullptr : &test);
   Assessment assessment;

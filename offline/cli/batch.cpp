@@ -62,6 +62,7 @@ void run_batch(BatchArguments& arguments) {
   }
   const std::string& directory_name = arguments.calibration.directory;
   arguments.options.calibration = calibration_options(arguments.calibration);
+  arguments.options.rotation = arguments.calibration.rotation;
   arguments.options.date = blob_date(arguments.calibration.date);
   if (arguments.options.jobs == 0) arguments.options.jobs = std::max(1U, std::thread::hardware_concurrency());
   std::error_code error;

@@ -8,8 +8,11 @@
 #include "offline/base/progress.hpp"
 #include "offline/cli/blob_command.hpp"
 #include "offline/cli/messages.hpp"
+#include "offline/identify/registration.hpp"
 #include "offline/identify/unknowns.hpp"
 #include "offline/robot/rotation.hpp"
+#include "offline/robot/units.hpp"
+#include "offline/robot/vectors.hpp"
 
 namespace mdhcal::offline {
 
@@ -62,8 +65,13 @@ Registration registration(const Robot& stated, const Dataset& data, bool refit_b
   Selection selection;
   selection.rows.resize(data.rows.size());
   std::iota(selection.rows.begin(), selection.rows.end(), std::size_t{0});
-  const Unknowns unknowns = choose_unknowns(robot, data, selection.rows, options);
-  const Fit fitted = fit_frames(unknowns, data, selection, options.noise_mm);
+  // The blob has no turn of a probe: the frames are those of the positions.
+  Dataset positions = data;
+  for (Measurement& m : positions.rows) {
+    if (m.kind == MeasurementKind::pose) m.kind = MeasurementKind::position;
+  }
+  const Unknowns unknowns = choose_unknowns(robot, positions, selection.rows, options);
+  const Fit fitted = fit_frames(unknowns, positions, selection, options.noise_mm);
   return {fitted.estimate.tracker_T_base, fitted.estimate.flange_p_m};
 }
 
@@ -75,9 +83,26 @@ Vector3 predicted(const Arm<double>& arm, const Registration& r, const Dataset& 
   return transform(compose(r.tracker_T_base, frame_of(pose)), r.flange_p_m[row.target]);
 }
 
-Dataset read_measurements(const std::string& path, const Robot& robot) {
+std::vector<double> rotation_errors_deg(const Arm<double>& arm, const Registration& r, const Dataset& data) {
+  std::vector<double> angles;
+  for (std::size_t target = 0; target < data.targets.size(); ++target) {
+    std::vector<Frame<double>> flange_R_probe;
+    for (const Measurement& row : data.rows) {
+      Pose<double> pose{};
+      if (row.kind != MeasurementKind::pose || row.target != target || forward(arm, row.q.data(), pose) != Status::ok) continue;
+      flange_R_probe.push_back(compose(inverted(compose(r.tracker_T_base, frame_of(pose))), frame_of(row.quaternion, {})));
+    }
+    const Frame<double> mean = mean_rotation(flange_R_probe);
+    for (const Frame<double>& each : flange_R_probe) {
+      angles.push_back(deg_per_rad * norm(log_of_rotation(compose(inverted(mean), each))));
+    }
+  }
+  return angles;
+}
+
+Dataset read_measurements(const std::string& path, const Robot& robot, const std::string& rotation) {
   Progress progress("read", verbosity() != Verbosity::quiet);
-  Dataset data = read_dataset(path, robot, progress.callback());
+  Dataset data = read_dataset(path, robot, rotation, progress.callback());
   inform_all(data.notes);
   return data;
 }

@@ -22,7 +22,11 @@ Registration registration(const Robot& robot, const Dataset& data, bool refit_ba
 /// Predicted position of a row's target through lib, tracker frame [m]. Throws InputError for joints out of range.
 Vector3 predicted(const Arm<double>& arm, const Registration& registration, const Dataset& data, const Measurement& row);
 
+/// Angles between predicted and measured rotation of the full poses [deg], each target's probe taken to be turned on the
+/// flange as the mean of its rows says: a blob does not state it.
+std::vector<double> rotation_errors_deg(const Arm<double>& arm, const Registration& registration, const Dataset& data);
+
 /// Reads measurements of the blob's robot, with progress on a terminal, and says what the reader noted.
-Dataset read_measurements(const std::string& path, const Robot& robot);
+Dataset read_measurements(const std::string& path, const Robot& robot, const std::string& rotation);
 
 }  // namespace mdhcal::offline

@@ -82,10 +82,10 @@ void run_calibrate(const CalibrateArguments& arguments) {
   const CalibrationOptions options = calibration_options(arguments);
   const std::string date = blob_date(arguments.date);
   const Robot robot = robot_of_argument(arguments.robot);
-  const Dataset data = arguments.import.exports.empty() ? read_dataset(arguments.measurements, robot)
+  const Dataset data = arguments.import.exports.empty() ? read_dataset(arguments.measurements, robot, arguments.rotation)
                                                         : read_imported(arguments.import, robot);
   Dataset test;
-  if (!arguments.test.empty()) test = read_dataset(arguments.test, robot);
+  if (!arguments.test.empty()) test = read_dataset(arguments.test, robot, arguments.rotation);
   OutputFolder folder(arguments.directory, result_names);
   Calibration c = calibrated(robot, data, options, arguments.test.empty() ? nullptr : &test);
   const std::optional<Diagnosis> diagnosis = searched(robot, data, options, arguments.diagnose, c);

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "offline/base/error.hpp"
+#include "offline/cli/rotation_option.hpp"
 #include "offline/robot/units.hpp"
 
 namespace mdhcal::offline {
@@ -25,10 +26,14 @@ void add_identification_options(CLI::App& command, CalibrationArguments& a) {
   command.add_option("--tool", a.tool, "fit, or given: the target is the robot file's tool point")
       ->check(CLI::IsMember({"fit", "given"}))
       ->capture_default_str();
+  add_rotation_option(command, a.rotation);
   command.add_option("--joints", a.joints, "Which joint columns to use, read or commanded; better: those read unless the commanded are clearly better")
       ->check(CLI::IsMember({"better", "read", "commanded"}))
       ->capture_default_str();
   command.add_option("--noise", a.options.noise_mm, "Standard deviation of a measured coordinate [mm], default 0.02")
+      ->check(CLI::PositiveNumber);
+  command.add_option("--rotation-noise", a.options.rotation_noise_mrad,
+                     "Standard deviation of a measured rotation about any axis [mrad]; by default it is estimated")
       ->check(CLI::PositiveNumber);
   command.add_option("--max-residual", a.options.max_residual_mm,
                      "Median position error that counts as explained [mm]; default 2 mm or 0.2 % of the reach")

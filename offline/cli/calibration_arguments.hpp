@@ -14,6 +14,7 @@ namespace mdhcal::offline {
 struct CalibrationArguments {
   std::string robot, measurements, directory;
   std::string test;
+  std::string rotation;
   std::string base = "fit", tool = "fit", joints = "better";
   std::optional<double> test_fraction;
   std::optional<std::string> date;

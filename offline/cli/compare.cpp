@@ -150,9 +150,9 @@ Comparison compare_methods(const Robot& robot, const Dataset& data, const Calibr
 void run_compare(const CalibrationArguments& arguments) {
   const CalibrationOptions options = calibration_options(arguments);
   const Robot robot = robot_of_argument(arguments.robot);
-  const Dataset data = read_dataset(arguments.measurements, robot);
+  const Dataset data = read_dataset(arguments.measurements, robot, arguments.rotation);
   Dataset test;
-  if (!arguments.test.empty()) test = read_dataset(arguments.test, robot);
+  if (!arguments.test.empty()) test = read_dataset(arguments.test, robot, arguments.rotation);
   OutputFolder folder(arguments.directory, {"compare.json", "compare.txt", "report.html"});
   const auto [lines, regularized, left_out] =
       compare_methods(robot, data, options, arguments.test.empty() ? nullptr : &test);

@@ -5,13 +5,14 @@
 #include "offline/cli/blob_command.hpp"
 #include "offline/cli/cold_start.hpp"
 #include "offline/cli/commands.hpp"
+#include "offline/cli/rotation_option.hpp"
 
 namespace mdhcal::offline {
 
 namespace {
 
 struct InverseArguments {
-  std::string blob, poses;
+  std::string blob, poses, rotation;
   PoseOptions pose;
   bool all = false;
 };
@@ -23,7 +24,7 @@ void append(std::string& out, const Geometry& geometry, const std::string& id, c
 void run_inverse(const InverseArguments& arguments) {
   const BlobArm blob = read_blob_arm(arguments.blob, arguments.pose);
   const Geometry& geometry = blob.model.geometry;
-  const Table<PoseRow> table = read_pose_file(arguments.poses, geometry);
+  const Table<PoseRow> table = read_pose_file(arguments.poses, geometry, arguments.rotation);
   inform_all(table.notes);
   std::string out = "id,status," + joint_header(geometry, "q") + '\n';
   for (const PoseRow& row : table.rows) {
@@ -50,6 +51,7 @@ void add_inverse(CLI::App& app) {
       ->required();
   command->add_flag("--all", arguments->all, "Every solution, a row each");
   arguments->pose.add_to(*command);
+  add_rotation_option(*command, arguments->rotation);
   command->footer("Example:\n  mdhcal inverse result/calibration.blob poses.csv > joints.csv");
   command->callback([arguments] { run_inverse(*arguments); });
 }

@@ -12,6 +12,7 @@
 #include "offline/cli/blob_registration.hpp"
 #include "offline/cli/commands.hpp"
 #include "offline/cli/messages.hpp"
+#include "offline/cli/rotation_option.hpp"
 #include "offline/output/blob_file.hpp"
 
 namespace mdhcal::offline {
@@ -19,7 +20,7 @@ namespace mdhcal::offline {
 namespace {
 
 struct MonitorArguments {
-  std::string blob, measurements;
+  std::string blob, measurements, rotation;
   std::optional<double> expected_mean_mm;
   std::size_t expected_count = 50;
   double alpha = 0.01;
@@ -29,7 +30,7 @@ struct MonitorArguments {
 void run_monitor(const MonitorArguments& arguments) {
   const BlobArm blob = read_blob_arm(arguments.blob, PoseOptions{});
   const Robot robot = robot_of(blob.model, arguments.blob);
-  const Dataset data = read_measurements(arguments.measurements, robot);
+  const Dataset data = read_measurements(arguments.measurements, robot, arguments.rotation);
   const BlobProvenance& provenance = blob.model.provenance;
   if (!arguments.expected_mean_mm && provenance.has_held_out == 0) {
     throw InputError(arguments.blob, 0, 0,
@@ -88,6 +89,7 @@ void add_monitor(CLI::App& app) {
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
   command->add_flag("--json", arguments->json, "Print the figures as JSON");
+  add_rotation_option(*command, arguments->rotation);
   command->footer("Example:\n  mdhcal monitor result/calibration.blob check.csv");
   command->callback([arguments] { run_monitor(*arguments); });
 }

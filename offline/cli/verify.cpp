@@ -15,6 +15,7 @@
 #include "offline/cli/blob_registration.hpp"
 #include "offline/cli/commands.hpp"
 #include "offline/cli/messages.hpp"
+#include "offline/cli/rotation_option.hpp"
 #include "offline/output/blob_file.hpp"
 
 namespace mdhcal::offline {
@@ -22,7 +23,7 @@ namespace mdhcal::offline {
 namespace {
 
 struct VerifyArguments {
-  std::string blob, measurements;
+  std::string blob, measurements, rotation;
   bool refit_base = false, refit_tool = false, json = false;
   std::optional<double> max_mean_mm, max_max_mm;
   AcceptanceOptions acceptance;
@@ -54,7 +55,7 @@ void print_line(const std::string& name, const Statistics& s) {
 void run_verify(const VerifyArguments& arguments) {
   const BlobArm blob = read_blob_arm(arguments.blob, PoseOptions{});
   const Robot robot = robot_of(blob.model, arguments.blob);
-  const Dataset data = read_measurements(arguments.measurements, robot);
+  const Dataset data = read_measurements(arguments.measurements, robot, arguments.rotation);
   if (!robot.tracker_T_base && !arguments.refit_base) {
     detail("The blob has no base frame: the measurements are taken to be in the robot's base frame.");
   }
@@ -68,6 +69,7 @@ void run_verify(const VerifyArguments& arguments) {
     }
   }
   const Statistics total = statistics(all);
+  const Statistics rotations = statistics(rotation_errors_deg(blob.arm, r, data));
 
   std::string broken;
   const Acceptance acceptance = accept(arguments.acceptance, blob.arm, r, data, arguments.refit_base, arguments.refit_tool);
@@ -84,6 +86,11 @@ void run_verify(const VerifyArguments& arguments) {
 
   if (arguments.json) {
     nlohmann::ordered_json json = figures_json(total);
+    if (rotations.count > 0) {
+      json["rotation_count"] = rotations.count;
+      json["rotation_mean_deg"] = rotations.mean;
+      json["rotation_max_deg"] = rotations.max;
+    }
     json["targets"] = nlohmann::ordered_json::array();
     for (std::size_t k = 0; k < by_target.size(); ++k) {
       nlohmann::ordered_json target{{"name", data.targets[k]}};
@@ -101,6 +108,9 @@ void run_verify(const VerifyArguments& arguments) {
     for (std::size_t k = 0; data.targets.size() > 1 && k < by_target.size(); ++k) {
       print_line("target " + data.targets[k], statistics(by_target[k]));
     }
+  }
+  if (!arguments.json && rotations.count > 0) {
+    std::printf("rotations of %zu full poses: mean %.4f, maximum %.4f degrees\n", rotations.count, rotations.mean, rotations.max);
   }
   if (!arguments.json) std::fputs(acceptance.text.c_str(), stdout);
   std::fflush(stdout);
@@ -122,6 +132,7 @@ void add_verify(CLI::App& app) {
       ->check(CLI::NonNegativeNumber);
   arguments->acceptance.add_to(*command);
   command->add_flag("--json", arguments->json, "Print the figures as JSON");
+  add_rotation_option(*command, arguments->rotation);
   command->footer("Example:\n  mdhcal verify result/calibration.blob check.csv --max-mean 0.1 --max-max 0.3");
   command->callback([arguments] { run_verify(*arguments); });
 }

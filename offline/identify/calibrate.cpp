@@ -18,6 +18,8 @@
 #include "offline/identify/notes.hpp"
 #include "offline/identify/published_methods.hpp"
 #include "offline/identify/regularized.hpp"
+#include "offline/identify/rotation_check.hpp"
+#include "offline/identify/rotation_noise.hpp"
 #include "offline/identify/spectrum.hpp"
 #include "offline/identify/unknowns.hpp"
 #include "offline/identify/usable.hpp"
@@ -76,13 +78,22 @@ Dataset aligned(const Dataset& test, const Dataset& training) {
   return out;
 }
 
-Robot corrected_robot(const Robot& robot, const Estimate& estimate, const Dataset& data) {
+// The turn of a target's probe where it was fitted, else as stated.
+std::optional<std::array<double, 4>> turn_of(const Layout& layout, const Estimate& estimate, std::size_t target,
+                                             const std::optional<std::array<double, 4>>& stated) {
+  if (std::find(layout.probes.begin(), layout.probes.end(), target) == layout.probes.end()) return stated;
+  const Pose<double> pose = pose_of(estimate.flange_R_probe[target]);
+  return std::array<double, 4>{pose.quaternion[0], pose.quaternion[1], pose.quaternion[2], pose.quaternion[3]};
+}
+
+Robot corrected_robot(const Robot& robot, const Estimate& estimate, const Layout& layout, const Dataset& data) {
   Robot out = robot;
   out.geometry = estimate.geometry;
   out.tracker_T_base = pose_of(estimate.tracker_T_base);
   const bool unnamed = data.targets.size() <= 1 && (data.targets.empty() || data.targets.front().empty());
   if (unnamed) {
     out.tool_p_m = estimate.flange_p_m.front();
+    out.tool_quaternion = turn_of(layout, estimate, 0, robot.tool_quaternion);
     return out;
   }
   for (std::size_t t = 0; t < data.targets.size(); ++t) {
@@ -90,8 +101,9 @@ Robot corrected_robot(const Robot& robot, const Estimate& estimate, const Datase
                                     [&](const TargetPoint& p) { return p.name == data.targets[t]; });
     if (found != out.targets.end()) {
       found->flange_p_m = estimate.flange_p_m[t];
+      found->quaternion = turn_of(layout, estimate, t, found->quaternion);
     } else {
-      out.targets.push_back({data.targets[t], estimate.flange_p_m[t]});
+      out.targets.push_back({data.targets[t], estimate.flange_p_m[t], turn_of(layout, estimate, t, {})});
     }
   }
   return out;
@@ -113,6 +125,28 @@ std::vector<LambdaReport::Point> points_of(const std::vector<LambdaPoint>& curve
   std::vector<LambdaReport::Point> out;
   for (const LambdaPoint& p : curve) out.push_back({p.lambda, p.residual_norm, p.solution_norm, p.criterion});
   return out;
+}
+
+// The weight of rotations beside positions, in every row that is used.
+void weigh_rotations(const CalibrationOptions& options, const Selection& selection, Calibration& out) {
+  out.training.rotation_lever_mm =
+      options.rotation_noise_mrad
+          ? 1e3 * out.noise_mm / *options.rotation_noise_mrad
+          : estimated_rotation_lever_mm(out.training, selection, out.layout, out.start, out.noise_mm);
+  out.testing.rotation_lever_mm = out.training.rotation_lever_mm;
+}
+
+void figure_rotations(Calibration& out) {
+  std::vector<std::size_t> tested;
+  for (const RowResult& row : out.rows) {
+    if (row.test) tested.push_back(row.row);
+  }
+  out.train_rotation = rotation_figures(out.start, out.estimate, out.training, out.training_rows);
+  if (!tested.empty()) out.test_rotation = rotation_figures(out.start, out.estimate, out.testing, tested);
+  for (const auto& [figures, on] : {std::pair{out.train_rotation, "training"}, std::pair{out.test_rotation, "held-out"}}) {
+    const std::string sentence = rotation_sentence(figures, on);
+    if (!sentence.empty()) out.notes.push_back(sentence);
+  }
 }
 
 void note_dependences(Calibration& out) {
@@ -217,12 +251,14 @@ void identify(Work& work, Calibration& out) {
   out.layout = work.unknowns.layout;
   out.decisions = work.unknowns.parameters.decisions;
   check_poses(work.robot, data, out.training_rows, work.unknowns);
+  check_rotations(work.robot, data, out.training_rows, unknowns_asked);
 
   work.selection.rows = out.training_rows;
   const Fit nominal = fit_frames(work.unknowns, data, work.selection, out.noise_mm);
   out.start = nominal.estimate;
   const bool any_sigma = states_sigma(data);
   if (any_sigma) out.residual_unit_mm = mean_sigma_mm(data, out.training_rows, out.noise_mm);
+  weigh_rotations(work.options, work.selection, out);
 
   RegularizedFit& result = work.regularized;
   work.penalised = work.options.method == "rpim" || work.options.method == "rpim-train";
@@ -262,7 +298,7 @@ void identify(Work& work, Calibration& out) {
   out.robust_weight = work.selection.robust_weight;
   out.scale_mm = result.fit.scale * out.residual_unit_mm;
   out.outlier_threshold_mm = outlier_error_norm(out.scale_mm);
-  out.corrected = corrected_robot(work.robot, out.estimate, data);
+  out.corrected = corrected_robot(work.robot, out.estimate, out.layout, data);
 }
 
 // Rank, covariance and the parameters' intervals, from the linearisation at the result.
@@ -328,6 +364,7 @@ void explain(const Work& work, Calibration& out) {
   }
   note_dependences(out);
   add_standing_notes(data, out);
+  figure_rotations(out);
   const std::vector<std::string> on_axis = targets_on_last_axis(out.estimate, data);
   out.notes.insert(out.notes.end(), on_axis.begin(), on_axis.end());
   out.accepted = out.usable() ? std::string() : work.options.accept;

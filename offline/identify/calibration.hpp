@@ -12,6 +12,7 @@
 #include "offline/base/statistics.hpp"
 #include "offline/identify/identifiability.hpp"
 #include "offline/identify/model.hpp"
+#include "offline/identify/rotation_figures.hpp"
 #include "offline/identify/uncertainty.hpp"
 
 namespace mdhcal::offline {
@@ -29,6 +30,7 @@ struct CalibrationOptions {
   std::string method = "rpim";          ///< rpim, rpim-train, nc, lsm, gd, gn, lm, ekf
   std::string lambda_rule = "reml";     ///< reml, rpim, rpim-train, l-curve, gcv, cv, discrepancy, quasi-optimality
   std::optional<double> lambda;         ///< --lambda: no rule
+  std::optional<double> rotation_noise_mrad;  ///< --rotation-noise: of a rotation about any axis; else it is estimated
   std::optional<double> noise_mm;       ///< --noise: standard deviation an axis where no sigma is stated; else 0.02
   std::uint64_t seed = 1;
   double test_fraction = 0;             ///< --test-fraction, in [0, 1): of the groups, drawn by seed
@@ -140,6 +142,7 @@ struct Calibration {
   SplitFigures train;
   std::optional<SplitFigures> test;
   std::optional<CrossValidation> cross_validation;
+  RotationFigures train_rotation, test_rotation;  ///< of the rows that are full poses
   std::vector<RowResult> rows;    ///< training rows, then test rows, each in file order
   std::vector<EstimatedParameter> parameters;
   Identifiability identifiability;

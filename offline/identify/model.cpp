@@ -83,6 +83,7 @@ void add_position_jacobian(const Arm<double>& arm, const Estimate& estimate, con
     }
     column += layout.target_columns();
   }
+  column += layout.probe_columns();
   for (const Parameter& parameter : layout.geometry) {
     const Screw screw = screw_of(arm, at.frames, parameter.id);
     Vector3 direction = screw.turns ? cross(screw.axis, minus(at.base_p_m, screw.point)) : screw.axis;
@@ -92,11 +93,12 @@ void add_position_jacobian(const Arm<double>& arm, const Estimate& estimate, con
 }
 
 // d(rotation vector residual)/d(unknowns): the angular velocity through the inverse left Jacobian at the residual.
-void add_rotation_jacobian(const Arm<double>& arm, const Estimate& estimate, const Reach& at, const Layout& layout,
-                           const Vector3& rotation_rad, double* jacobian, std::size_t stride) {
+void add_rotation_jacobian(const Arm<double>& arm, const Estimate& estimate, const Reach& at, std::size_t target,
+                           const Layout& layout, double lever_mm, const Vector3& rotation_rad, double* jacobian,
+                           std::size_t stride) {
   const auto put = [&](std::size_t column, const Vector3& turn_rad) {
     const Vector3 rate = inverse_left_jacobian(rotation_rad, turn_rad);
-    for (std::size_t k = 0; k < 3; ++k) jacobian[k * stride + column] = rotation_lever_mm * rate[k];
+    for (std::size_t k = 0; k < 3; ++k) jacobian[k * stride + column] = lever_mm * rate[k];
   };
   if (layout.base) {
     for (std::size_t k = 0; k < 3; ++k) {
@@ -105,7 +107,15 @@ void add_rotation_jacobian(const Arm<double>& arm, const Estimate& estimate, con
       put(k, axis);
     }
   }
-  std::size_t column = layout.frame_columns();
+  std::size_t column = layout.base_columns() + layout.target_columns();
+  for (const std::size_t probe : layout.probes) {
+    for (int k = 0; k < 3 && probe == target; ++k) {
+      Vector3 turn = rotate(estimate.tracker_T_base, column_of(at.frames[arm.joint_count + 1], k));
+      for (double& component : turn) component *= 1e-3;
+      put(column + static_cast<std::size_t>(k), turn);
+    }
+    column += 3;
+  }
   for (const Parameter& parameter : layout.geometry) {
     const Screw screw = screw_of(arm, at.frames, parameter.id);
     if (screw.turns) {
@@ -118,6 +128,11 @@ void add_rotation_jacobian(const Arm<double>& arm, const Estimate& estimate, con
 }
 
 }  // namespace
+
+Frame<double> probe_of(const Estimate& estimate, std::size_t target) {
+  if (target < estimate.flange_R_probe.size()) return estimate.flange_R_probe[target];
+  return {{1, 0, 0, 0, 1, 0, 0, 0, 1}, {0, 0, 0}};
+}
 
 std::size_t residual_count(MeasurementKind kind) {
   switch (kind) {
@@ -193,12 +208,14 @@ std::size_t MeasurementModel::residual(const Dataset& data, std::size_t row, con
     add_position_jacobian(arm_, estimate_, at, m.target, layout, 1.0, jacobian, stride);
   }
   if (m.kind == MeasurementKind::pose) {
-    const Frame<double> predicted = compose(estimate_.tracker_T_base, at.frames[arm_.joint_count + 1]);
+    const Frame<double> predicted = compose(compose(estimate_.tracker_T_base, at.frames[arm_.joint_count + 1]),
+                                            probe_of(estimate_, m.target));
     const Frame<double> measured = frame_of(m.quaternion, m.position_m);
     const Vector3 rotation_rad = log_of_rotation(compose(predicted, inverted(measured)));
-    for (std::size_t k = 0; k < 3; ++k) residual_mm[3 + k] = rotation_lever_mm * rotation_rad[k];
+    for (std::size_t k = 0; k < 3; ++k) residual_mm[3 + k] = data.rotation_lever_mm * rotation_rad[k];
     if (jacobian != nullptr) {
-      add_rotation_jacobian(arm_, estimate_, at, layout, rotation_rad, jacobian + 3 * stride, stride);
+      add_rotation_jacobian(arm_, estimate_, at, m.target, layout, data.rotation_lever_mm, rotation_rad,
+                            jacobian + 3 * stride, stride);
     }
   }
   return count;
@@ -217,6 +234,11 @@ Estimate moved(const Estimate& estimate, const Layout& layout, const double* ste
     for (std::size_t t = 0; t < layout.targets; ++t) {
       for (std::size_t k = 0; k < 3; ++k) out.flange_p_m[t][k] += 1e-3 * step[column++];
     }
+  }
+  for (const std::size_t probe : layout.probes) {
+    const Frame<double> turn = rotation_about({1e-3 * step[column], 1e-3 * step[column + 1], 1e-3 * step[column + 2]}, {});
+    out.flange_R_probe[probe] = orthonormal(compose(turn, estimate.flange_R_probe[probe]));
+    column += 3;
   }
   for (const Parameter& parameter : layout.geometry) {
     set_value(out.geometry, parameter.id, value(estimate.geometry, parameter.id) + parameter.prior * step[column++]);

@@ -18,28 +18,34 @@ struct Estimate {
   Geometry geometry{};
   Frame<double> tracker_T_base{{1, 0, 0, 0, 1, 0, 0, 0, 1}, {0, 0, 0}};
   std::vector<Vector3> flange_p_m;  ///< one a target of the dataset
+  /// How the probe that measures rotations is turned on the flange, one a target (its position is zero); the identity
+  /// for targets beyond the end.
+  std::vector<Frame<double>> flange_R_probe;
 };
 
+/// The turn of a target's probe.
+Frame<double> probe_of(const Estimate& estimate, std::size_t target);
+
 /// Which unknowns there are and in which column each stands: base (rotation [mrad] about `pivot_m`, then translation
-/// [mm], both in the tracker frame), the targets (flange frame [mm]), then the geometry, in units of the prior.
+/// [mm], both in the tracker frame), the targets (flange frame [mm]), the turns of their probes (about the flange's axes
+/// [mrad]), then the geometry, in units of the prior.
 struct Layout {
   bool base = true;
   bool target = true;
   std::size_t targets = 1;
+  std::vector<std::size_t> probes;  ///< the targets whose probe's turn is fitted
   std::vector<Parameter> geometry;
   Vector3 pivot_m{};  ///< the point that a base rotation leaves in place, tracker frame
 
   std::size_t base_columns() const { return base ? 6 : 0; }
   std::size_t target_columns() const { return target ? 3 * targets : 0; }
-  std::size_t frame_columns() const { return base_columns() + target_columns(); }  ///< unpenalised
+  std::size_t probe_columns() const { return 3 * probes.size(); }
+  std::size_t frame_columns() const { return base_columns() + target_columns() + probe_columns(); }  ///< unpenalised
   std::size_t columns() const { return frame_columns() + geometry.size(); }
 };
 
 /// The most scalar residuals of a row of measurements (a full pose).
 inline constexpr std::size_t max_row_residuals = 6;
-/// A measured rotation counts like the displacement that it causes at this distance [mm]: a rotation error of
-/// 0.2 mrad, usual for a six-dimensional tracker target, then weighs like 0.02 mm.
-inline constexpr double rotation_lever_mm = 100.0;
 
 std::size_t residual_count(MeasurementKind kind);
 
@@ -55,7 +61,7 @@ class MeasurementModel {
   Vector3 target_position(const double* q, std::size_t target) const;
 
   /// Predicted minus measured [mm], residual_count() of them: x, y, z in the tracker frame; for a full pose then the
-  /// rotation vector of predicted * measured^-1 times the lever; for a distance the difference of the lengths.
+  /// rotation vector of predicted * measured^-1 times data.rotation_lever_mm; for a distance the difference of the lengths.
   /// Not weighted. Returns the count.
   std::size_t residual(const Dataset& data, std::size_t row, double* residual_mm) const;
 

@@ -86,7 +86,6 @@ ParameterList choose_parameters(const Robot& robot, const Gauge& gauge, const Pa
 
   ParameterList list;
   for (std::int32_t i = 0; i < n; ++i) {
-    const bool revolute = geometry.joint[i].kind == JointKind::revolute;
     const double angle = i + 1 < n ? angle_to_next_axis(geometry, i) : 0.5 * half_turn;
     const bool parallel = i + 1 < n && angle <= choice.parallel_rad;
     for (std::int32_t k = 0; k < 5; ++k) {
@@ -101,14 +100,8 @@ ParameterList choose_parameters(const Robot& robot, const Gauge& gauge, const Pa
         free = !parallel;
       }
       if (gauge.base_fitted && i == 0 && id.key != ParameterKey::beta) free = false;
-      if (gauge.target_fitted && i == n - 1 && revolute &&
-          (id.key == ParameterKey::d || (id.key == ParameterKey::theta && !gauge.rotations_measured))) {
-        free = false;
-      }
-      if (gauge.target_fitted && i == n - 1 && !revolute &&
-          (id.key == ParameterKey::d || id.key == ParameterKey::theta)) {
-        free = false;
-      }
+      // The target takes them up, and so does its probe's turn where rotations are measured.
+      if (gauge.target_fitted && i == n - 1 && (id.key == ParameterKey::d || id.key == ParameterKey::theta)) free = false;
       if (contains(choice.free, word)) free = true;
       if (contains(choice.fix, word)) free = false;
       if (!free) continue;
@@ -139,8 +132,7 @@ ParameterList choose_parameters(const Robot& robot, const Gauge& gauge, const Pa
   }
   if (gauge.target_fitted) {
     const std::string last = std::to_string(n);
-    list.decisions.push_back("The target is fitted: d" + last +
-                             (gauge.rotations_measured ? " stays nominal." : " and theta" + last + " stay nominal."));
+    list.decisions.push_back("The target is fitted: d" + last + " and theta" + last + " stay nominal.");
   }
   for (const std::string& word : choice.fix) list.decisions.push_back(word + " is fixed on request.");
   for (const std::string& word : choice.free) list.decisions.push_back(word + " is freed on request.");

@@ -39,7 +39,6 @@ struct Parameter {
 struct Gauge {
   bool base_fitted = true;
   bool target_fitted = true;
-  bool rotations_measured = false;  ///< full poses: the last link's theta is seen by the rotation
 };
 
 struct ParameterChoice {

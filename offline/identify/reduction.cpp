@@ -73,7 +73,7 @@ const Eigen::MatrixXd& Triangle::matrix() {
 
 bool states_sigma(const Dataset& data) {
   for (const Measurement& m : data.rows) {
-    if (m.sigma_m[0] > 0.0 || m.sigma_m[1] > 0.0 || m.sigma_m[2] > 0.0) return true;
+    if (m.sigma_m[0] > 0.0 || m.sigma_m[1] > 0.0 || m.sigma_m[2] > 0.0 || m.sigma_rotation_rad > 0.0) return true;
   }
   return false;
 }
@@ -94,7 +94,9 @@ void residual_scale(const Dataset& data, std::size_t row, double noise_mm, bool 
     scale[k] = any_sigma ? 1.0 / sigma_mm : 1.0;
     mean_sigma += sigma_mm / 3.0;
   }
-  for (std::size_t k = 3; k < max_row_residuals; ++k) scale[k] = any_sigma ? 1.0 / mean_sigma : 1.0;
+  const double sigma_rotation_mm =
+      m.sigma_rotation_rad > 0.0 ? data.rotation_lever_mm * m.sigma_rotation_rad : mean_sigma;
+  for (std::size_t k = 3; k < max_row_residuals; ++k) scale[k] = any_sigma ? 1.0 / sigma_rotation_mm : 1.0;
 }
 
 double chi_median(std::size_t count) { return count == 1 ? 0.674490 : count == 3 ? 1.538172 : 2.312596; }

@@ -46,7 +46,8 @@ struct Selection {
 };
 
 /// Scale of each scalar residual of a row: 1 / sigma where the file states sigma (per axis), else 1 if no row of the
-/// dataset states one and 1 / noise_mm if others do. Multiplies residuals in mm.
+/// dataset states one and 1 / noise_mm if others do. Multiplies residuals in mm. A rotation whose sigma is not stated
+/// takes the mean of its position's through the dataset's lever.
 void residual_scale(const Dataset& data, std::size_t row, double noise_mm, bool any_sigma, double* scale);
 bool states_sigma(const Dataset& data);
 /// Mean over the rows and axes of the stated standard deviation, `noise_mm` where none is stated [mm].

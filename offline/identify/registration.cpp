@@ -24,6 +24,8 @@ struct Sight {
   Frame<double> base_T_flange;
   Vector3 measured_m;
   std::size_t target;
+  bool turned;                 // the rotation was measured too
+  Frame<double> tracker_R_probe;
 };
 
 std::vector<Sight> sights(const Dataset& data, const std::vector<std::size_t>& rows, const Arm<double>& arm) {
@@ -37,7 +39,7 @@ std::vector<Sight> sights(const Dataset& data, const std::vector<std::size_t>& r
     const Measurement& m = data.rows[usable[i]];
     Pose<double> pose{};
     if (forward(arm, m.q.data(), pose) != Status::ok) continue;
-    out.push_back({frame_of(pose), m.position_m, m.target});
+    out.push_back({frame_of(pose), m.position_m, m.target, m.kind == MeasurementKind::pose, frame_of(m.quaternion, {})});
   }
   return out;
 }
@@ -93,6 +95,18 @@ void refit_translations(const std::vector<Sight>& sight, const Layout& layout, E
   }
   for (std::size_t c = 0; c < layout.target_columns(); ++c) {
     estimate.flange_p_m[c / 3][c % 3] += x(base + static_cast<Eigen::Index>(c));
+  }
+}
+
+// The turn of each probe for a given base rotation: the mean of what each row says.
+void refit_probes(const std::vector<Sight>& sight, const Layout& layout, Estimate& estimate) {
+  for (const std::size_t probe : layout.probes) {
+    std::vector<Frame<double>> flange_R_probe;
+    for (const Sight& s : sight) {
+      if (!s.turned || s.target != probe) continue;
+      flange_R_probe.push_back(compose(inverted(compose(estimate.tracker_T_base, s.base_T_flange)), s.tracker_R_probe));
+    }
+    estimate.flange_R_probe[probe] = mean_rotation(flange_R_probe);
   }
 }
 
@@ -299,6 +313,19 @@ Frame<double> rigid_fit(const std::vector<Vector3>& a, const std::vector<Vector3
   return out;
 }
 
+Frame<double> mean_rotation(const std::vector<Frame<double>>& rotations) {
+  Frame<double> out{{1, 0, 0, 0, 1, 0, 0, 0, 1}, {0, 0, 0}};
+  if (rotations.empty()) return out;
+  Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
+  for (const Frame<double>& each : rotations) {
+    for (int i = 0; i < 3; ++i) {
+      for (int j = 0; j < 3; ++j) sum(i, j) += each.rotation[3 * i + j];
+    }
+  }
+  store(nearest_rotation(sum).rotation, out.rotation);
+  return out;
+}
+
 std::vector<Estimate> starting_values(const Dataset& data, const std::vector<std::size_t>& rows,
                                       const Layout& layout, const Estimate& nominal) {
   Arm<double> arm{};
@@ -319,6 +346,7 @@ std::vector<Estimate> starting_values(const Dataset& data, const std::vector<std
   register_base(sight, layout, candidate);
   refit_translations(sight, layout, candidate);
   out.push_back(candidate);
+  for (Estimate& each : out) refit_probes(sight, layout, each);
   return out;
 }
 

@@ -14,6 +14,10 @@ namespace mdhcal::offline {
 Frame<double> rigid_fit(const std::vector<Vector3>& a, const std::vector<Vector3>& b,
                         const std::vector<double>& weight);
 
+/// The rotation that is nearest to all of the given ones in the mean square of their matrices' differences (chordal mean;
+/// Moakher 2002). The position is zero; of no rotations the mean is the identity.
+Frame<double> mean_rotation(const std::vector<Frame<double>>& rotations);
+
 /// Starting values, best first is not promised: the caller refines each and keeps the one that fits best. Candidates
 /// are, as far as base and targets are to be fitted: the joint linear equations R^T m - R^T t = p_i + R_i flange_p with
 /// R projected on SO(3); target points from equal distances between pairs of poses (Li 2022, Eq. 21), then rigid_fit; a

@@ -11,11 +11,24 @@ namespace mdhcal::offline {
 
 namespace {
 
-Vector3 nominal_target(const Robot& robot, const std::string& word) {
+TargetPoint nominal_target(const Robot& robot, const std::string& word) {
   for (const TargetPoint& target : robot.targets) {
-    if (target.name == word) return target.flange_p_m;
+    if (target.name == word) return target;
   }
-  return robot.tool_p_m.value_or(Vector3{});
+  return {word, robot.tool_p_m.value_or(Vector3{}), robot.tool_quaternion};
+}
+
+// The targets whose rotation some row measures.
+std::vector<std::size_t> turned_targets(const Dataset& data, const std::vector<std::size_t>& rows, std::size_t targets) {
+  std::vector<bool> turned(targets, false);
+  for (const std::size_t row : rows) {
+    if (data.rows[row].kind == MeasurementKind::pose) turned[data.rows[row].target] = true;
+  }
+  std::vector<std::size_t> out;
+  for (std::size_t t = 0; t < targets; ++t) {
+    if (turned[t]) out.push_back(t);
+  }
+  return out;
 }
 
 }  // namespace
@@ -26,19 +39,20 @@ Unknowns choose_unknowns(const Robot& robot, const Dataset& data, const std::vec
   Gauge gauge;
   gauge.base_fitted = options.fit_base;
   gauge.target_fitted = options.fit_tool;
-  gauge.rotations_measured = std::any_of(rows.begin(), rows.end(), [&](std::size_t row) {
-    return data.rows[row].kind == MeasurementKind::pose;
-  });
   unknowns.parameters = choose_parameters(robot, gauge, options.parameters);
 
   unknowns.nominal.geometry = robot.geometry;
   if (robot.tracker_T_base) unknowns.nominal.tracker_T_base = frame_of(*robot.tracker_T_base);
-  for (const std::string& word : data.targets) unknowns.nominal.flange_p_m.push_back(nominal_target(robot, word));
-  if (unknowns.nominal.flange_p_m.empty()) unknowns.nominal.flange_p_m.push_back(robot.tool_p_m.value_or(Vector3{}));
+  for (const std::string& word : data.targets.empty() ? std::vector<std::string>{""} : data.targets) {
+    const TargetPoint target = nominal_target(robot, word);
+    unknowns.nominal.flange_p_m.push_back(target.flange_p_m);
+    unknowns.nominal.flange_R_probe.push_back(frame_of(target.quaternion.value_or(std::array<double, 4>{1, 0, 0, 0}), {}));
+  }
 
   unknowns.frames.base = options.fit_base;
   unknowns.frames.target = options.fit_tool;
   unknowns.frames.targets = unknowns.nominal.flange_p_m.size();
+  if (options.fit_tool) unknowns.frames.probes = turned_targets(data, rows, unknowns.frames.targets);
   std::size_t seen = 0;
   for (std::size_t row : rows) {
     const Measurement& m = data.rows[row];

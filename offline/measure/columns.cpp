@@ -13,6 +13,22 @@ constexpr std::size_t most_listed = 50;  // columns named in a message: one scre
 bool is_length(const Unit& unit) { return unit.name == millimetre.name || unit.name == metre.name; }
 bool is_angle(const Unit& unit) { return unit.name == degree.name || unit.name == radian.name; }
 
+bool is_degree(std::string_view suffix) { return suffix == "deg" || suffix == "\xC2\xB0"; }  // or a degree sign
+
+// What follows `name` and an underscore in a column's name; empty if that is another one.
+std::string_view suffix_behind(std::string_view column, std::string_view name) {
+  if (column.size() <= name.size() + 1 || !column.starts_with(name) || column[name.size()] != '_') return {};
+  return column.substr(name.size() + 1);
+}
+
+std::string in_small_letters(std::string text) {
+  for (char& c : text) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+  return text;
+}
+
+// What other systems put before a joint's number.
+constexpr std::string_view other_prefixes[] = {"j", "a", "joint_", "joint", "axis_", "axis"};
+
 }  // namespace
 
 double Column::read(const Csv& csv, double bound) const {
@@ -29,18 +45,15 @@ Column Columns::find(const std::string& name, const Unit& unit) {
   Column column;
   const auto& names = csv_.names();
   for (std::size_t i = 0; i < names.size(); ++i) {
+    if (used_[i]) continue;
+    const std::string_view suffix = suffix_behind(names[i], name);
     Unit stated = unit;
     if (names[i] != name) {
-      if (names[i].size() <= name.size() + 1 || names[i].compare(0, name.size(), name) != 0 ||
-          names[i][name.size()] != '_') {
-        continue;
-      }
-      const std::string_view suffix = std::string_view(names[i]).substr(name.size() + 1);
       if (is_length(unit) && suffix == "mm") {
         stated = millimetre;
       } else if (is_length(unit) && suffix == "m") {
         stated = metre;
-      } else if (is_angle(unit) && (suffix == "deg" || suffix == "\xC2\xB0")) {  // or a degree sign
+      } else if (is_angle(unit) && is_degree(suffix)) {
         stated = degree;
       } else if (is_angle(unit) && suffix == "rad") {
         stated = radian;
@@ -50,9 +63,18 @@ Column Columns::find(const std::string& name, const Unit& unit) {
     }
     if (column.found) csv_.fail_header(i, "found \"" + name + "\" a second time; expected each column once.");
     column = {i, stated, true, names[i] != name};
-    used_[i] = true;
   }
+  if (column.found) used_[column.index] = true;
   return column;
+}
+
+bool Columns::has(const std::string& name) const {
+  const auto& names = csv_.names();
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    const std::string_view suffix = suffix_behind(names[i], name);
+    if (!used_[i] && (names[i] == name || is_degree(suffix) || suffix == "rad" || suffix == "mm" || suffix == "m")) return true;
+  }
+  return false;
 }
 
 Column Columns::require(const std::string& name, const Unit& unit, const std::string& purpose) {
@@ -80,14 +102,51 @@ std::vector<Column> Columns::find_all(std::initializer_list<std::string> names, 
   return columns;
 }
 
+bool Columns::begins(const std::string& prefix, const std::string& suffix) const {
+  const std::string first = prefix + '1' + suffix;
+  const auto& names = csv_.names();
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    if (!used_[i] && (names[i] == first || names[i].starts_with(first + '_'))) return true;
+  }
+  return false;
+}
+
+// All of them or none: a part is refused with the name that is missing.
+std::vector<Column> Columns::named_joints(const Geometry& geometry, const Unit& angle, const Unit& length,
+                                          const std::vector<std::string>& own_names, const std::string& suffix) {
+  std::vector<Column> columns;
+  std::string missing;
+  for (std::size_t i = 0; i < own_names.size() && i < static_cast<std::size_t>(geometry.joint_count); ++i) {
+    if (own_names[i].empty()) return {};
+    const Unit unit = geometry.joint[i].kind == JointKind::prismatic ? length : angle;
+    const Column column = find(in_small_letters(own_names[i]) + suffix, unit);
+    if (column) columns.push_back(column);
+    if (!column && missing.empty()) missing = own_names[i];
+  }
+  if (!columns.empty() && !missing.empty()) {
+    csv_.fail_header("The column \"" + missing + suffix + "\" is missing; expected a column of each joint_name of the "
+                     "robot file; found the columns " + list() + ".");
+  }
+  return columns;
+}
+
 std::vector<Column> Columns::joints(const Geometry& geometry, const Unit& angle, const Unit& length,
-                                    const std::string& prefix, const std::string& suffix, bool must) {
-  const auto begins = [&](const std::string& letter) {
-    const std::string first = letter + '1' + suffix;
-    return std::any_of(csv_.names().begin(), csv_.names().end(),
-                       [&](const std::string& name) { return name == first || name.starts_with(first + '_'); });
-  };
-  if (prefix == "q" && !begins("q") && begins("j")) return joints(geometry, angle, length, "j", suffix, must);
+                                    const std::string& prefix, const std::string& suffix, bool must,
+                                    const std::vector<std::string>& own_names) {
+  if (prefix == "q" && !begins("q", suffix)) {
+    std::vector<Column> named = named_joints(geometry, angle, length, own_names, suffix);
+    if (!named.empty()) return named;
+    for (const std::string_view other : other_prefixes) {
+      if (begins(std::string(other), suffix)) return joints(geometry, angle, length, std::string(other), suffix, must);
+    }
+    if (must) {
+      csv_.fail_header("The column \"q1\" is missing; expected the readings of the robot's " +
+                       std::to_string(geometry.joint_count) + (geometry.joint_count == 1 ? " joint" : " joints") +
+                       " in q1, q2, ... (or j1, a1, joint_1, axis_1 and so on, or under the names that the robot file "
+                       "states by joint_name in each [[link]]); found the columns " + list() + ".");
+    }
+    return {};
+  }
   const auto count = static_cast<std::size_t>(geometry.joint_count);
   std::vector<Column> columns;
   for (std::size_t i = 0; i < count; ++i) {

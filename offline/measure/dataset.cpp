@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "offline/measure/dataset.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <map>
 #include <optional>
 #include <unordered_map>
 
@@ -36,9 +39,14 @@ class Names {
 
 class Reader {
  public:
-  Reader(const std::string& text, const std::string& path, const Robot& robot,
+  Reader(const std::string& text, const std::string& path, const Robot& robot, const std::string& rotation,
          const std::function<void(std::size_t, std::size_t)>& progress)
-      : progress_(progress), kilobytes_(text.size() / 1000), csv_(text, path, "a measurement file"), columns_(csv_), robot_(robot) {
+      : progress_(progress),
+        kilobytes_(text.size() / 1000),
+        csv_(text, path, "a measurement file"),
+        columns_(csv_),
+        robot_(robot),
+        rotation_named_(rotation) {
     data_.path = path;
     data_.joint_count = static_cast<std::size_t>(robot.geometry.joint_count);
     data_.digest_sha256 = sha256_hex(text);
@@ -65,23 +73,27 @@ class Reader {
   void find_columns() {
     const Unit length = length_unit(robot_);
     const Unit angle = angle_unit(robot_);
-    q_ = columns_.joints(robot_.geometry, angle, length, "q", "", true);
+    // A quaternion in q1 ... q4 is told from joint readings first.
+    rotation_.emplace(csv_, columns_, angle, rotation_named_);
+    data_.rotation = {rotation_->convention(), rotation_->by_axis(), rotation_->unit_stated()};
+    const std::vector<std::string> names(robot_.joint_name.begin(), robot_.joint_name.end());
+    q_ = columns_.joints(robot_.geometry, angle, length, "q", "", true, names);
     for (const Column& column : q_) {
       data_.joint_columns.push_back(csv_.names()[column.index]);
-      data_.angles_stated = data_.angles_stated || column.stated;
+      data_.angles_stated = data_.angles_stated || column.unit_stated;
     }
-    commanded_ = columns_.joints(robot_.geometry, angle, length, "q", "_cmd", false);
+    commanded_ = columns_.joints(robot_.geometry, angle, length, "q", "_cmd", false, names);
     position_ = columns_.find_all({"x", "y", "z"}, length);
     distance_ = columns_.find("distance", length);
     to_ = columns_.find_text("to");
-    data_.lengths_stated = position_.empty() ? distance_.stated : position_.front().stated;
+    data_.lengths_stated = position_.empty() ? distance_.unit_stated : position_.front().unit_stated;
     if (position_.empty() && !distance_) (void)columns_.require("x", length, "with the measured point (or \"distance\")");
     id_ = columns_.find_text("id");
     group_ = columns_.find_text("group");
     target_ = columns_.find_text("target");
     sigma_ = columns_.find("sigma", length);
     sigmas_ = columns_.find_all({"sx", "sy", "sz"}, length);
-    rotation_.emplace(csv_, columns_, angle);
+    sigma_rotation_ = columns_.find("sigma_rotation", angle);
     temperature_ = columns_.find_text("temperature");
     direction_ = columns_.find_text("direction");
     if (sigma_ && !sigmas_.empty()) csv_.fail_header(sigma_.index, "found beside sx, sy, sz; expected one of the two.");
@@ -122,7 +134,8 @@ class Reader {
       row.position_m[k] = position_[k].read(csv_);
       size += std::abs(row.position_m[k]);
     }
-    // Trackers export a lost point as 0, 0, 0; a draw wire's fixed end may well lie there.
+    // Trackers export a lost point as 0, 0, 0; a draw wire's fixed end may well lie there, and a socket that is touched.
+    if (!(size > 0) && !has_distance) at_origin_.push_back(data_.rows.size());
     return size > 0 || has_distance;
   }
 
@@ -147,21 +160,25 @@ class Reader {
   void read_rotation(Measurement& row) {
     if (!rotation_->found() || rotation_->empty()) return;
     row.kind = MeasurementKind::pose;
-    row.quaternion = rotation_->read();
+    row.rotation_numbers = rotation_->numbers();
+    row.quaternion = rotation_->quaternion(row.rotation_numbers);
   }
 
   void read_sigma(Measurement& row) {
-    const auto one = [&](const Column& column) {
-      if (column.empty(csv_)) return 0.0;
-      const double sd = column.read(csv_);
-      if (sd < 0) {
-        csv_.fail(column.index, "found " + std::string(csv_.field(column.index)) +
-                                    "; expected a standard deviation, not below 0.");
-      }
-      return sd;
-    };
-    if (sigma_) row.sigma_m.fill(one(sigma_));
-    for (std::size_t k = 0; k < sigmas_.size(); ++k) row.sigma_m[k] = one(sigmas_[k]);
+    if (sigma_rotation_) row.sigma_rotation_rad = standard_deviation(sigma_rotation_);
+    if (sigma_) row.sigma_m.fill(standard_deviation(sigma_));
+    for (std::size_t k = 0; k < sigmas_.size(); ++k) row.sigma_m[k] = standard_deviation(sigmas_[k]);
+  }
+
+  // 0 where the field is empty.
+  double standard_deviation(const Column& column) const {
+    if (column.empty(csv_)) return 0.0;
+    const double sd = column.read(csv_);
+    if (sd < 0) {
+      csv_.fail(column.index, "found " + std::string(csv_.field(column.index)) +
+                                  "; expected a standard deviation, not below 0.");
+    }
+    return sd;
   }
 
   void read_words(Measurement& row) {
@@ -220,7 +237,36 @@ class Reader {
       data_.rows[link.row].other_row = found->second;
       is_end[static_cast<std::size_t>(found->second)] = true;
     }
+    keep_touched_origin();
     drop_pointless(is_end);
+  }
+
+  // Points that come back bit by bit at other joint readings are not what a tracker measured but what the arm touched:
+  // where all of the others do, a point at 0, 0, 0 is one of them and not a lost one.
+  void keep_touched_origin() {
+    if (at_origin_.empty()) return;
+    struct Touched {
+      const Joints* first;
+      bool again;
+    };
+    std::map<std::array<double, 3>, Touched> points;
+    auto pointless = pointless_.begin();
+    for (std::size_t i = 0; i < data_.rows.size(); ++i) {
+      if (pointless != pointless_.end() && *pointless == i) {
+        ++pointless;
+        continue;
+      }
+      const Measurement& row = data_.rows[i];
+      if (row.kind == MeasurementKind::distance) return;
+      Touched& point = points.try_emplace(row.position_m, Touched{&row.q, false}).first->second;
+      point.again = point.again || row.q != *point.first;
+    }
+    if (points.empty() || !std::all_of(points.begin(), points.end(), [](const auto& p) { return p.second.again; })) return;
+    std::vector<std::size_t> empty;
+    std::set_difference(pointless_.begin(), pointless_.end(), at_origin_.begin(), at_origin_.end(), std::back_inserter(empty));
+    pointless_ = std::move(empty);
+    data_.notes.push_back(csv_.path() + ": 0, 0, 0 is read as a point that the arm touched, as every other point of the file "
+                                        "is touched by several poses.");
   }
 
   void drop_pointless(const std::vector<bool>& is_end) {
@@ -296,13 +342,14 @@ class Reader {
   Csv csv_;
   Columns columns_;
   const Robot& robot_;
+  const std::string rotation_named_;
   Dataset data_;
   std::vector<Column> q_, commanded_, position_, sigmas_;
   std::optional<RotationColumns> rotation_;
-  Column distance_, to_, id_, group_, target_, sigma_, temperature_, direction_;
+  Column distance_, to_, id_, group_, target_, sigma_, sigma_rotation_, temperature_, direction_;
   Names group_names_, target_names_;
   std::vector<Link> links_;
-  std::vector<std::size_t> pointless_;
+  std::vector<std::size_t> pointless_, at_origin_;
   std::vector<long> missing_lines_;
   std::size_t seen_ = 0;
 };
@@ -313,13 +360,34 @@ std::string row_name(const Dataset& data, const Measurement& row) {
   return data.targets.size() > 1 ? row.id + '/' + data.targets[row.target] : row.id;
 }
 
-Dataset parse_dataset(const std::string& text, const std::string& path, const Robot& robot) {
-  return Reader(text, path, robot, {}).read();
+std::array<double, 4> rotation_read_as(const Dataset& data, const Measurement& row, const RotationConvention& convention,
+                                       double factor) {
+  std::array<double, 4> numbers = row.rotation_numbers;
+  if (convention.form != RotationForm::quaternion) {
+    for (double& number : numbers) number *= factor;
+  }
+  return quaternion_from(convention, ordered(convention, data.rotation.by_axis, numbers));
 }
 
-Dataset read_dataset(const std::string& path, const Robot& robot,
+Dataset with_rotations_read_as(Dataset data, const RotationConvention& convention, double factor) {
+  for (Measurement& m : data.rows) {
+    if (m.kind != MeasurementKind::pose) continue;
+    m.quaternion = rotation_read_as(data, m, convention, factor);
+    if (convention.form != RotationForm::quaternion) {
+      for (double& number : m.rotation_numbers) number *= factor;
+    }
+  }
+  data.rotation.convention = convention;
+  return data;
+}
+
+Dataset parse_dataset(const std::string& text, const std::string& path, const Robot& robot, const std::string& rotation) {
+  return Reader(text, path, robot, rotation, {}).read();
+}
+
+Dataset read_dataset(const std::string& path, const Robot& robot, const std::string& rotation,
                      const std::function<void(std::size_t, std::size_t)>& progress) {
-  return Reader(read_file(path, "a measurement file"), path, robot, progress).read();
+  return Reader(read_file(path, "a measurement file"), path, robot, rotation, progress).read();
 }
 
 }  // namespace mdhcal::offline

@@ -54,14 +54,14 @@ Table<JointRow> read_joint_file(const std::string& path, const Geometry& geometr
   return table;
 }
 
-Table<PoseRow> read_pose_file(const std::string& path, const Geometry& geometry) {
+Table<PoseRow> read_pose_file(const std::string& path, const Geometry& geometry, const std::string& rotation_name) {
   const std::string text = read_file(path, "a table of poses");
   Csv csv(text, path, "a table of poses");
   Columns columns(csv);
   const Column id = columns.find_text("id");
   std::vector<Column> position;
   for (const char* name : {"x", "y", "z"}) position.push_back(columns.require(name, millimetre, "with the position"));
-  RotationColumns rotation(csv, columns, degree);
+  RotationColumns rotation(csv, columns, degree, rotation_name);
   if (!rotation.found()) (void)columns.require("qw", plain_number, "with the rotation (or rx, ry, rz)");
   const auto seed = columns.joints(geometry, degree, millimetre, "s", "", false);
   Table<PoseRow> table;
@@ -70,7 +70,7 @@ Table<PoseRow> read_pose_file(const std::string& path, const Geometry& geometry)
     PoseRow row;
     row.id = id_of(csv, id, table.rows.size());
     for (std::size_t k = 0; k < 3; ++k) row.pose.position_m[k] = position[k].read(csv);
-    const std::array<double, 4> q = rotation.read();
+    const std::array<double, 4> q = rotation.quaternion(rotation.numbers());
     for (std::size_t k = 0; k < 4; ++k) row.pose.quaternion[k] = q[k];
     bool has_seed = !seed.empty();
     for (const Column& column : seed) has_seed = has_seed && !column.empty(csv);

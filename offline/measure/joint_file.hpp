@@ -30,9 +30,9 @@ struct Table {
 /// `q1..qN` and optionally `id`; degrees and millimetres unless a suffix says otherwise. Throws InputError.
 Table<JointRow> read_joint_file(const std::string& path, const Geometry& geometry);
 
-/// `x,y,z` with `qw,qx,qy,qz` or `rx,ry,rz`, optionally `id` and a seed `s1..sN`; millimetres and degrees unless a
-/// suffix says otherwise. Throws InputError.
-Table<PoseRow> read_pose_file(const std::string& path, const Geometry& geometry);
+/// `x,y,z` with `qw,qx,qy,qz`, `rx,ry,rz` or the columns of the convention `rotation` names (rotation_columns.hpp),
+/// optionally `id` and a seed `s1..sN`; millimetres and degrees unless a suffix says otherwise. Throws InputError.
+Table<PoseRow> read_pose_file(const std::string& path, const Geometry& geometry, const std::string& rotation = "");
 
 /// "PREFIX1_deg,PREFIX2_mm,...": the header of N joints.
 std::string joint_header(const Geometry& geometry, const std::string& prefix);

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: MIT
 #include "offline/output/result_json.hpp"
-#include "offline/robot/units.hpp"
 
 #include <algorithm>
 #include <cmath>
 
 #include <nlohmann/json.hpp>
+
+#include "offline/robot/units.hpp"
+#include "offline/robot/vectors.hpp"
 
 namespace mdhcal::offline {
 
@@ -52,6 +54,18 @@ Json frame_uncertainty(const Calibration& c) {
   json["workspace_median_sd_mm"] = finite(c.accuracy.median_mm);
   json["workspace_median_sd_of_base_and_targets_mm"] = finite(c.accuracy.frames_median_mm);
   return json;
+}
+
+// The rotations of the rows that are full poses, beside the positions' figures.
+void add_rotation(Json& split, const RotationFigures& rotation) {
+  if (rotation.after.count == 0) return;
+  const auto add = [](Json& json, const Statistics& s) {
+    json["rotation_count"] = s.count;
+    json["rotation_mean_deg"] = finite(s.mean);
+    json["rotation_max_deg"] = finite(s.max);
+  };
+  add(split["before"], rotation.before);
+  add(split["after"], rotation.after);
 }
 
 Json vector_mm(const Vector3& v) { return {finite(v[0]), finite(v[1]), finite(v[2])}; }
@@ -163,10 +177,15 @@ std::string result_json(const Calibration& c, const Assessment& assessment) {
   json["iterations"] = c.iterations;
   json["train"] = split(c.train);
   json["test"] = c.test ? split(*c.test) : Json(nullptr);
+  add_rotation(json["train"], c.train_rotation);
+  if (c.test) add_rotation(json["test"], c.test_rotation);
   json["outliers"] = c.train.outliers;
   json["outlier_threshold_mm"] = finite(c.outlier_threshold_mm);
   json["residual_scale_mm"] = finite(c.scale_mm);
   json["noise_sigma_mm"] = finite(c.covariance.sigma * c.residual_unit_mm);
+  if (c.train_rotation.after.count > 0) {
+    json["rotation_sigma_mrad"] = finite(1e3 * c.covariance.sigma * c.residual_unit_mm / c.training.rotation_lever_mm);
+  }
   json["lambda"] = lambda(c.lambda);
   json["parameters"] = Json::array();
   for (const EstimatedParameter& p : c.parameters) json["parameters"].push_back(parameter(p));
@@ -176,6 +195,10 @@ std::string result_json(const Calibration& c, const Assessment& assessment) {
     const Vector3& p = c.estimate.flange_p_m[t];
     json["targets"].push_back({{"name", t < c.training.targets.size() ? c.training.targets[t] : std::string()},
                                {"xyz_mm", vector_mm({1e3 * p[0], 1e3 * p[1], 1e3 * p[2]})}});
+    if (std::find(c.layout.probes.begin(), c.layout.probes.end(), t) == c.layout.probes.end()) continue;
+    const Vector3 turn = log_of_rotation(c.estimate.flange_R_probe[t]);
+    json["targets"].back()["rotation_vector_deg"] = {finite(deg_per_rad * turn[0]), finite(deg_per_rad * turn[1]),
+                                                     finite(deg_per_rad * turn[2])};
   }
   Json& identifiability = json["identifiability"];
   identifiability["before"] = spectrum(c.identifiability.before);

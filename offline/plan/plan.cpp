@@ -173,7 +173,7 @@ Plan make_plan(const Robot& robot, const PlanOptions& options, const std::vector
   const Eigen::MatrixXd inverse_transposed =
       factor.transpose().triangularView<Eigen::Lower>().solve(Eigen::MatrixXd::Identity(n, n));
   const ParameterList list = choose_parameters(
-      robot, {options.unknowns.fit_base, options.unknowns.fit_tool, false}, options.unknowns.parameters);
+      robot, {options.unknowns.fit_base, options.unknowns.fit_tool}, options.unknowns.parameters);
   for (std::size_t k = 0; k < list.free.size(); ++k) {
     const Parameter& parameter = list.free[k];
     const double sd = inverse_transposed.col(experiment.of_interest + static_cast<Eigen::Index>(k)).norm();

@@ -154,12 +154,14 @@ Dataset measure(const Robot& truth, const Arm<double>& arm, std::size_t configur
                     small_rotation(options.rotation_noise_rad * normal_vector(random)),
                 quaternion);
           std::copy(std::begin(quaternion), std::end(quaternion), row.quaternion.begin());
+          row.rotation_numbers = row.quaternion;
         }
         row.line = static_cast<long>(set.rows.size()) + 2;
         set.rows.push_back(row);
       }
     }
   }
+  set.rotation.convention = *rotation_convention("quaternion");
   return set;
 }
 

@@ -35,7 +35,9 @@ Case random_case(std::uint64_t seed) {
   g.last_T_flange = pose_of(flange);
   c.estimate.tracker_T_base = rotation_about({1.0, -0.5, 0.7}, {0.4, 1.0, -2.0});
   c.estimate.flange_p_m = {{0.05, -0.03, 0.12}, {-0.04, 0.06, 0.08}};
+  c.estimate.flange_R_probe = {rotation_about({0.2, 1.1, -0.4}, {}), rotation_about({-1.7, 0.3, 0.9}, {})};
   c.layout.targets = 2;
+  c.layout.probes = {0, 1};
   c.layout.pivot_m = {0.3, -0.2, 0.9};
   for (std::int32_t i = 0; i < g.joint_count; ++i) {
     for (int key = 0; key < 5; ++key) {

@@ -130,23 +130,6 @@ TEST(Distances, ABallBarSharpensCoarsePositions) {
   EXPECT_LT(mixed, 0.7 * alone);
 }
 
-TEST(FullPoses, TellTheLastJointAndTheRotation) {
-  SimulationOptions options = arm_options(8);
-  options.full_pose = true;
-  const Simulation s = simulate(family_robot("spherical-wrist"), options);
-  TableColumns columns = TableColumns{id_column(s.train)} + joint_columns(s.train) + position_columns(s.train);
-  const char* const names[] = {"qw", "qx", "qy", "qz"};
-  for (std::size_t k = 0; k < 4; ++k) {
-    columns.emplace_back(names[k], [&s, k](std::size_t i) { return decimal(s.train.rows[i].quaternion[k]); });
-  }
-  const Calibration c = calibrated(s, measured_table(s.train.rows.size(), columns));
-  EXPECT_LT(distance_from_truth_mm(s, c, 500, 2), 0.02);
-  const auto theta6 = std::find_if(c.parameters.begin(), c.parameters.end(),
-                                   [](const EstimatedParameter& p) { return name(p.id) == "theta6"; });
-  ASSERT_NE(theta6, c.parameters.end());
-  EXPECT_TRUE(theta6->identifiable);
-}
-
 TEST(Reflectors, EachIsFoundWhereItIs) {
   const Simulation s = simulated(60, 12, 0.02e-3, 3);
   const TableColumn target{"target", [&](std::size_t i) { return s.train.targets[s.train.rows[i].target]; }};

@@ -102,6 +102,16 @@ TEST(Dataset, ReadsPosesBothWays) {
   EXPECT_NEAR(v.rows[0].quaternion[1], std::sqrt(0.5), 1e-15);
 }
 
+// A socket that lies in the origin is a measurement where the file's other points are touched several times too.
+TEST(Dataset, ATouchedPointAtTheOriginIsNoLostPoint) {
+  const auto rows = [](const std::string& text) { return parse_dataset("q1,q2,x,y,z\n" + text, "m.csv", arm(2)).rows.size(); };
+  EXPECT_EQ(rows("1,2,0,0,0\n3,4,0,0,0\n5,6,50,0,0\n7,8,50,0,0\n"), 4U);
+  // A point that was measured once, or twice in the same pose, is a tracker's.
+  EXPECT_EQ(rows("1,2,0,0,0\n3,4,0,0,0\n5,6,50,0,0\n7,8,50,0,0\n9,1,50,0,1\n"), 3U);
+  EXPECT_EQ(rows("1,2,0,0,0\n1,2,0,0,0\n5,6,50,0,0\n5,6,50,0,0\n"), 2U);
+  EXPECT_NE(message_of("q1,q2,x,y,z\n1,2,0,0,0\n3,4,0,0,0\n").find("no measured point"), std::string::npos);
+}
+
 TEST(Dataset, ReadsDistances) {
   const Dataset data = parse_dataset(
       "id,q1,q2,x,y,z,distance,to\na,1,2,,,,,\nlost,1,2,0,0,0,,\nb,3,4,,,,300.5,a\nc,5,6,0,0,0,100,\nd,5,6,7,8,9,,\n",
