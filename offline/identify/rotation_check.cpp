@@ -128,17 +128,17 @@ std::vector<RotationFit> rotation_fits(const Dataset& data, const std::vector<st
 }
 
 std::string reading_of(const RotationFit& fit) {
+  if (fit.convention.form != RotationForm::quaternion && std::fabs(fit.factor - 1.0) > 0.0) {
+    const char* unit = fit.factor > 1.0 ? "rad" : "deg";
+    return std::string("angles in ") + (fit.factor > 1.0 ? "radians" : "degrees") + " (--rotation " + fit.convention.name +
+           "), which the columns' names have to state (rx_" + unit + ", ry_" + unit + ", rz_" + unit + ")";
+  }
   std::string text = fit.convention.name;
   if (fit.convention.form == RotationForm::quaternion) {
     text = fit.convention.scalar_last ? "qx, qy, qz, qw" : "qw, qx, qy, qz";
     if (fit.convention.inverse) text += " of the inverse rotation";
   }
-  text += " (--rotation " + fit.convention.name + ")";
-  if (fit.convention.form != RotationForm::quaternion && std::fabs(fit.factor - 1.0) > 0.0) {
-    text += std::string(" with angles in ") + (fit.factor > 1.0 ? "radians" : "degrees") +
-            ", which the columns' names should state (rx_" + (fit.factor > 1.0 ? "rad" : "deg") + ")";
-  }
-  return text;
+  return text + " (--rotation " + fit.convention.name + ")";
 }
 
 void check_rotations(const Robot& robot, const Dataset& data, const std::vector<std::size_t>& rows,

@@ -46,7 +46,7 @@ std::string readings_text(const Geometry& geometry, const std::vector<double>& q
 // Looks for a pose whose target would move when the parameters move along `direction` (with base and targets following
 // as the present poses make them): such a pose tells the direction.
 std::string advice(const Layout& layout, const MeasurementModel& model, const Eigen::VectorXd& direction, bool alone,
-                   std::uint64_t seed) {
+                   bool at_flange, std::uint64_t seed) {
   constexpr int trials = 300;
   Random random(seed);
   Dataset trial;
@@ -66,8 +66,9 @@ std::string advice(const Layout& layout, const MeasurementModel& model, const Ei
     if (movement > best) best = movement, best_q = q;
   }
   if (!(best > 1e-6 * typical)) {
-    return std::string("No pose of this arm with this target tells ") + (alone ? "it" : "them apart") +
-           ": put the target further off the last axis, or fix " + (alone ? "it." : "one of them.");
+    // Only what the last link holds is told by another target; two rails or parallel axes stay as they are.
+    return std::string("No pose of this arm with this target tells ") + (alone ? "it" : "them apart") + ": " +
+           (at_flange ? "put the target further off the last axis, or fix " : "fix ") + (alone ? "it." : "one of them.");
   }
   return "A pose such as " + readings_text(model.estimate().geometry, best_q) + " would tell " + (alone ? "it." : "them apart.");
 }
@@ -132,13 +133,17 @@ Identifiability identifiability(const ReducedSystem& system, const SpectralProbl
     const Eigen::VectorXd v = svd.v.col(k);
     WeakDirection weak;
     weak.relative_singular_value = relative > jacobian_tolerance ? relative : 0.0;
+    const std::int32_t last = model.estimate().geometry.joint_count - 1;
+    bool at_flange = false;
     std::vector<Eigen::Index> order(static_cast<std::size_t>(n));
     std::iota(order.begin(), order.end(), 0);
     std::sort(order.begin(), order.end(),
               [&](Eigen::Index a, Eigen::Index b) { return std::fabs(v(a)) > std::fabs(v(b)); });
     for (Eigen::Index i : order) {
       if (std::fabs(v(i)) < 0.2 * std::fabs(v(order.front()))) break;
-      weak.members.push_back(name(layout.geometry[static_cast<std::size_t>(i)].id));
+      const ParameterId id = layout.geometry[static_cast<std::size_t>(i)].id;
+      at_flange = at_flange || (id.link == last && model.estimate().geometry.joint[last].kind == JointKind::revolute);
+      weak.members.push_back(name(id));
     }
     const Eigen::VectorXd direction = norms.cwiseInverse().asDiagonal() * v;
     Eigen::VectorXd full(static_cast<Eigen::Index>(layout.columns()));
@@ -146,7 +151,7 @@ Identifiability identifiability(const ReducedSystem& system, const SpectralProbl
     still.frame_residual.setZero();
     full.tail(n) = direction;
     full.head(full.size() - n) = frame_step(still, direction);
-    weak.advice = advice(layout, model, full, weak.members.size() == 1, seed);
+    weak.advice = advice(layout, model, full, weak.members.size() == 1, at_flange, seed);
     out.weak.push_back(std::move(weak));
   }
   return out;
