@@ -9,6 +9,7 @@
 #include "offline/report/html.hpp"
 #include "offline/robot/rotation.hpp"
 #include "offline/robot/units.hpp"
+#include "offline/robot/vectors.hpp"
 
 namespace mdhcal::offline {
 
@@ -134,15 +135,25 @@ std::string frames_section(const Calibration& c) {
   for (std::size_t t = 0; t < c.estimate.flange_p_m.size(); ++t) {
     const Vector3& p = c.estimate.flange_p_m[t];
     const std::string word = t < c.training.targets.size() && !c.training.targets[t].empty() ? " " + c.training.targets[t] : "";
-    rows.push_back({"target" + escaped(word) + (c.layout.target ? ", fitted" : ", given"), number_cell(1e3 * p[0], 4),
-                    number_cell(1e3 * p[1], 4), number_cell(1e3 * p[2], 4), "", "", ""});
+    std::vector<std::string> row{"target" + escaped(word) + (c.layout.target ? ", fitted" : ", given"), number_cell(1e3 * p[0], 4),
+                                 number_cell(1e3 * p[1], 4), number_cell(1e3 * p[2], 4), "", "", ""};
+    const auto probe = std::find(c.layout.probes.begin(), c.layout.probes.end(), t);
+    const bool turned = probe != c.layout.probes.end();
+    const Vector3 probe_turn = log_of_rotation(probe_of(c.estimate, t));
+    for (std::size_t k = 0; turned && k < 3; ++k) row[4 + k] = number_cell(deg_per_rad * probe_turn[k], 5);
+    rows.push_back(std::move(row));
     if (c.layout.target && c.covariance.size > 0) {
       const std::size_t column = c.layout.base_columns() + 3 * t;
-      rows.push_back({"standard deviation", number_cell(sd(column), 4), number_cell(sd(column + 1), 4), number_cell(sd(column + 2), 4), "", "", ""});
+      row = {"standard deviation", number_cell(sd(column), 4), number_cell(sd(column + 1), 4), number_cell(sd(column + 2), 4), "", "", ""};
+      const std::size_t first = c.layout.base_columns() + c.layout.target_columns() +
+                                3 * static_cast<std::size_t>(probe - c.layout.probes.begin());
+      for (std::size_t k = 0; turned && k < 3; ++k) row[4 + k] = number_cell(1e-3 * deg_per_rad * sd(first + k), 5);
+      rows.push_back(std::move(row));
     }
   }
   return table(rows) + paragraph("The base in the frame of the measurements, its rotation as a rotation vector (standard "
-                                 "deviations about the middle of the measured points); target points in the flange frame.");
+                                 "deviations about the middle of the measured points); target points in the flange frame, with the turn "
+                                 "of the probe on the flange where rotations were measured.");
 }
 
 std::string method_section(const std::vector<MethodFigures>& methods) {
