@@ -15,7 +15,7 @@ namespace {
 using namespace mdhcal;
 using namespace mdhcal::offline;
 
-constexpr double deg = 3.14159265358979323846 / 180.0;
+constexpr double degree_rad = 3.14159265358979323846 / 180.0;
 using Matrix = std::array<std::array<double, 3>, 3>;
 
 Matrix times(const Matrix& a, const Matrix& b) {
@@ -55,7 +55,10 @@ void expect_near(const Matrix& a, const Matrix& b, double tolerance, const std::
 std::array<double, 4> random_quaternion(Random& random) {
   std::array<double, 4> q{};
   double norm = 0;
-  for (double& c : q) norm += (c = random.normal()) * c;
+  for (double& c : q) {
+    c = random.normal();
+    norm += c * c;
+  }
   for (double& c : q) c /= std::copysign(std::sqrt(norm), q[0]);
   return q;
 }
@@ -140,7 +143,7 @@ TEST(Rotations, UnknownNamesAreRefusedWithTheList) {
   }
 }
 
-Robot arm() {
+Robot two_joint_arm() {
   Robot robot;
   robot.geometry.joint_count = 2;
   for (int i = 0; i < 2; ++i) robot.geometry.joint[i].sign = 1;
@@ -150,14 +153,14 @@ Robot arm() {
 
 // The quaternion that a row under `header` is read as.
 std::array<double, 4> read(const std::string& header, const std::string& numbers, const std::string& rotation) {
-  const Dataset data = parse_dataset(header + "\n" + numbers + "\n", "m.csv", arm(), rotation);
+  const Dataset data = parse_dataset(header + "\n" + numbers + "\n", "m.csv", two_joint_arm(), rotation);
   EXPECT_EQ(data.rows.at(0).kind, MeasurementKind::pose) << header;
   return data.rows.at(0).quaternion;
 }
 
 std::string refusal(const std::string& header, const std::string& numbers, const std::string& rotation) {
   try {
-    (void)parse_dataset(header + "\n" + numbers + "\n", "m.csv", arm(), rotation);
+    (void)parse_dataset(header + "\n" + numbers + "\n", "m.csv", two_joint_arm(), rotation);
   } catch (const InputError& error) {
     return error.what();
   }
@@ -170,7 +173,7 @@ TEST(RotationColumns, AreReadByTheNameOfTheirConvention) {
     expect_near(matrix_of(read("q1,q2,x,y,z," + columns, "0,0,1,2,3," + numbers, rotation)), truth, 1e-14,
                 columns + " as " + rotation);
   };
-  const Matrix zyx = times(times(rot_z(10 * deg), rot_y(20 * deg)), rot_x(30 * deg));
+  const Matrix zyx = times(times(rot_z(10 * degree_rad), rot_y(20 * degree_rad)), rot_x(30 * degree_rad));
   expect("a,b,c", "10,20,30", "kuka", zyx);
   expect("C,A,B", "30,10,20", "kuka", zyx);
   expect("w,p,r", "30,20,10", "fanuc", zyx);
@@ -181,15 +184,15 @@ TEST(RotationColumns, AreReadByTheNameOfTheirConvention) {
   expect("ez,ey,ex", "10,20,30", "abb", zyx);
   expect("a,b,c", "30,20,10", "mitsubishi", zyx);
   expect("u,v,w", "10,20,30", "epson", zyx);
-  expect("rx,ry,rz", "30,20,10", "staubli", times(times(rot_x(30 * deg), rot_y(20 * deg)), rot_z(10 * deg)));
-  expect("o,a,t", "10,20,30", "kawasaki", times(times(rot_z(10 * deg), rot_y(20 * deg)), rot_z(30 * deg)));
-  expect("rx,ry,rz", "10,20,30", "zyz", times(times(rot_z(10 * deg), rot_y(20 * deg)), rot_z(30 * deg)));
+  expect("rx,ry,rz", "30,20,10", "staubli", times(times(rot_x(30 * degree_rad), rot_y(20 * degree_rad)), rot_z(10 * degree_rad)));
+  expect("o,a,t", "10,20,30", "kawasaki", times(times(rot_z(10 * degree_rad), rot_y(20 * degree_rad)), rot_z(30 * degree_rad)));
+  expect("rx,ry,rz", "10,20,30", "zyz", times(times(rot_z(10 * degree_rad), rot_y(20 * degree_rad)), rot_z(30 * degree_rad)));
   expect("rx,ry,rz", "0,0,0.5", "ur", rot_z(0.5));       // radians by name
-  expect("rx,ry,rz", "0,0,30", "", rot_z(30 * deg));     // the robot file's unit
+  expect("rx,ry,rz", "0,0,30", "", rot_z(30 * degree_rad));     // the robot file's unit
   expect("rx_rad,ry_rad,rz_rad", "0,0,0.5", "", rot_z(0.5));
-  expect("rx,ry,rz", "0,0,30", "vector-inverse", rot_z(-30 * deg));
+  expect("rx,ry,rz", "0,0,30", "vector-inverse", rot_z(-30 * degree_rad));
   const std::string half = "0.7071067811865476";
-  const Matrix right = rot_z(90 * deg);
+  const Matrix right = rot_z(90 * degree_rad);
   expect("qx,qy,qz,qw", "0,0," + half + "," + half, "", right);
   expect("qw,qx,qy,qz", half + ",0,0," + half, "", right);
   expect("qw,qx,qy,qz", "0,0," + half + "," + half, "quaternion-xyzw", right);  // wrongly labelled
@@ -200,12 +203,12 @@ TEST(RotationColumns, AQuaternionInQ0ToQ3IsToldFromJoints) {
   const std::string half = "0.7071067811865476";
   for (const char* columns : {"j1,j2,x,y,z,q0,q1,q2,q3", "a1,a2,x,y,z,q0,q1,q2,q3"}) {
     const auto q = read(columns, "10,20,1,2,3," + half + ",0,0," + half, "quaternion");
-    expect_near(matrix_of(q), rot_z(90 * deg), 1e-14, columns);
+    expect_near(matrix_of(q), rot_z(90 * degree_rad), 1e-14, columns);
     EXPECT_NE(refusal(columns, "10,20,1,2,3,1,0,0,0", "").find("--rotation"), std::string::npos);
   }
   // ABB's own names.
   const auto q = read("j1,j2,x,y,z,q1,q2,q3,q4", "10,20,1,2,3," + half + ",0,0," + half, "quaternion");
-  expect_near(matrix_of(q), rot_z(90 * deg), 1e-14, "q1 ... q4");
+  expect_near(matrix_of(q), rot_z(90 * degree_rad), 1e-14, "q1 ... q4");
 }
 
 // What looks like a rotation is read or asked about, never ignored.
@@ -213,7 +216,7 @@ TEST(RotationColumns, AreNeverIgnoredInSilence) {
   for (const char* columns : {"a,b,c", "w,p,r", "Roll,Pitch,Yaw", "ez,ey,ex", "o,a,t", "a_deg,b_deg,c_deg"}) {
     const std::string message = refusal(std::string("q1,q2,x,y,z,") + columns, "0,0,1,2,3,1,2,3", "");
     EXPECT_NE(message.find("--rotation"), std::string::npos) << columns << ": " << message;
-    const Dataset data = parse_dataset(std::string("q1,q2,x,y,z,") + columns + "\n0,0,1,2,3,1,2,3\n", "m.csv", arm(), "none");
+    const Dataset data = parse_dataset(std::string("q1,q2,x,y,z,") + columns + "\n0,0,1,2,3,1,2,3\n", "m.csv", two_joint_arm(), "none");
     EXPECT_EQ(data.rows[0].kind, MeasurementKind::position);
   }
   EXPECT_NE(refusal("q1,q2,x,y,z", "0,0,1,2,3", "kuka").find("a, b, c"), std::string::npos);
@@ -231,11 +234,11 @@ TEST(RotationColumns, RowsAreReadAgainInAnotherConvention) {
       for (int k = 0; k < 3; ++k) text += ',' + std::to_string(random.uniform(-180, 180));
       text += '\n';
     }
-    const Dataset kuka = parse_dataset(text, "m.csv", arm(), "kuka");
+    const Dataset kuka = parse_dataset(text, "m.csv", two_joint_arm(), "kuka");
     for (const std::string& name : rotation_names()) {
       const RotationConvention convention = *rotation_convention(name);
       if (convention.form == RotationForm::quaternion || convention.radians) continue;
-      const Dataset truth = parse_dataset(text, "m.csv", arm(), name);
+      const Dataset truth = parse_dataset(text, "m.csv", two_joint_arm(), name);
       const Dataset again = with_rotations_read_as(kuka, convention);
       for (std::size_t i = 0; i < truth.rows.size(); ++i) EXPECT_EQ(truth.rows[i].quaternion, again.rows[i].quaternion) << name;
     }
@@ -244,16 +247,16 @@ TEST(RotationColumns, RowsAreReadAgainInAnotherConvention) {
 
 TEST(JointColumns, NamesOfOtherSystemsAreReadByARule) {
   for (const char* names : {"A1,A2", "J1,J2", "joint_1,joint_2", "Joint1,Joint2", "axis_1,axis_2", "A1 [deg],A2 [deg]"}) {
-    const Dataset data = parse_dataset(std::string(names) + ",X,Y,Z\n10,20,1,2,3\n", "m.csv", arm());
-    EXPECT_DOUBLE_EQ(data.rows.at(0).q[0], 10 * deg) << names;
-    EXPECT_DOUBLE_EQ(data.rows.at(0).q[1], 20 * deg) << names;
+    const Dataset data = parse_dataset(std::string(names) + ",X,Y,Z\n10,20,1,2,3\n", "m.csv", two_joint_arm());
+    EXPECT_DOUBLE_EQ(data.rows.at(0).q[0], 10 * degree_rad) << names;
+    EXPECT_DOUBLE_EQ(data.rows.at(0).q[1], 20 * degree_rad) << names;
   }
   // The names of the robot file, in any order of columns.
-  Robot robot = arm();
+  Robot robot = two_joint_arm();
   robot.joint_name = {"shoulder_pan_joint", "Elbow"};
   const Dataset data = parse_dataset("elbow,x,shoulder_pan_joint_rad,y,z\n20,1,0.5,2,3\n", "m.csv", robot);
   EXPECT_DOUBLE_EQ(data.rows.at(0).q[0], 0.5);
-  EXPECT_DOUBLE_EQ(data.rows.at(0).q[1], 20 * deg);
+  EXPECT_DOUBLE_EQ(data.rows.at(0).q[1], 20 * degree_rad);
   // A part of them, or none: the mapping is asked for.
   const auto message = [&](const std::string& header) {
     try {
