@@ -169,10 +169,12 @@ TEST(FullPoses, RotationsInAnotherConventionAreFoundOut) {
       const RotationConvention offered = *rotation_convention(named);
       for (int k = 0; k < 10; ++k) {
         const std::array<double, 4> n{random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(0, 1)};
-        const auto read_as = [&](const RotationConvention& c) { return frame_of(quaternion_from(c, ordered(c, each.by_axis, n)), {}); };
+        const auto read_as = [&](const RotationConvention& r) { return frame_of(quaternion_from(r, ordered(r, each.by_axis, n)), {}); };
         EXPECT_LT(angle_between(read_as(convention), read_as(offered)), 1e-6) << each.right << " offered as " << named;
       }
-      if (convention.radians) EXPECT_NE(message.find("rx_rad"), std::string::npos) << message;
+      if (convention.radians) {
+        EXPECT_NE(message.find("rx_rad"), std::string::npos) << message;
+      }
     }
   }
 }

@@ -225,7 +225,9 @@ TEST(Urdf, LimitsThatAreNoneAreReadAsNoneAndSaid) {
     EXPECT_EQ(robot.geometry.joint[0].has_min == 1, each.has_min) << each.limit;
     EXPECT_EQ(robot.geometry.joint[0].has_max == 1, each.has_max) << each.limit;
     ASSERT_EQ(chain.notes.size(), each.said ? 1U : 0U) << each.limit;
-    if (each.said) EXPECT_NE(chain.notes[0].find("one.urdf:1: joint \"swing\""), std::string::npos) << chain.notes[0];
+    if (each.said) {
+      EXPECT_NE(chain.notes[0].find("one.urdf:1: joint \"swing\""), std::string::npos) << chain.notes[0];
+    }
   }
 }
 
