@@ -44,7 +44,8 @@ struct RowSlopes {
 
 class Linear {
  public:
-  Linear(const Job& few, const Judgement& at) : joints_(few.data.joint_count) {
+  Linear(const Job& few, const Judgement& at)
+      : joints_(few.data.joint_count), lever_mm_(few.data.rotation_lever_mm) {
     const MeasurementModel model(at.fit.estimate);
     Arm<double> arm{};
     (void)make_arm(at.fit.estimate.geometry, arm);
@@ -157,16 +158,17 @@ class Linear {
     rows_.push_back(slopes);
   }
 
-  static std::array<double, 6> weighted(const Vector3& shift_m, const Vector3& turn_rad, const double* weight) {
+  std::array<double, 6> weighted(const Vector3& shift_m, const Vector3& turn_rad, const double* weight) const {
     std::array<double, 6> out{};
     for (std::size_t k = 0; k < 3; ++k) {
       out[k] = weight[k] * mm_per_m * shift_m[k];
-      out[3 + k] = weight[3 + k] * rotation_lever_mm * turn_rad[k];
+      out[3 + k] = weight[3 + k] * lever_mm_ * turn_rad[k];
     }
     return out;
   }
 
   std::size_t joints_;
+  double lever_mm_;  // what a turn counts as, see Dataset
   Eigen::VectorXd residual_;
   Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr_;
   std::vector<RowSlopes> rows_;
