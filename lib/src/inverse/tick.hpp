@@ -27,8 +27,8 @@ struct Look {
 
 /// A tick under way. Joints in readings [rad] or [m].
 struct TickState : Goal {
-  const TickOptions<Real>* tick;
   Real low[max_joints], high[max_joints]; ///< where this tick may leave the joints; last joints are inside
+  const TickOptions<Real>* tick;
   const Real* last;                      ///< last joints
   Real q[max_joints];                    ///< in: last joints; out: the result
   PoseError error;                       ///< of the result

@@ -26,8 +26,10 @@ BUDGETS = [
     Budget("cortex-m7", "stack of the tick, painted", ("tick", "double", None), "stack painted", 3072, "bytes"),
     Budget("cortex-m7", "stack of the tick, by the call graph", (TICK,), "stack bound", 3072, "bytes"),
     Budget("cortex-m7", "forward-only image", (FORWARD,), "code and constants", 4096, "bytes"),
-    Budget("cortex-m7", "everything in double", ("everything in double",), "code and constants", 65536, "bytes"),
-    Budget("cortex-m7", "everything in float", ("everything in float",), "code and constants", 65536, "bytes"),
+    # One of the eight sectors of 128 KiB of a bank of the STM32H743 (docs/porting.md) holds it with half as much again of the
+    # user's own. It was 64 KiB before the C header had frames, ramps between any two models, and accelerations.
+    Budget("cortex-m7", "everything in double", ("everything in double",), "code and constants", 81920, "bytes"),
+    Budget("cortex-m7", "everything in float", ("everything in float",), "code and constants", 81920, "bytes"),
     Budget("cortex-m7", "decoding a blob", ("decode", "-", None), "max", 60000, "instructions"),
     Budget("cortex-m4f", "forward, float", ("forward", "float", None), "max", 1600, "instructions"),
     Budget("cortex-m4f", "warm tick, float, median", ("tick", "float", "regular"), "median", 8000, "instructions"),
