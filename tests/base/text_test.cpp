@@ -36,8 +36,12 @@ TEST(Text, EveryCodePointIsUtf8AndNothingElseOfTheSameBytes) {
     const bool surrogate = code >= 0xD800 && code < 0xE000;
     const std::string bytes = utf8(code);
     ASSERT_EQ(is_utf8(bytes), !surrogate) << code;
-    if (!surrogate) ASSERT_EQ(character_size(bytes + "x"), bytes.size()) << code;
-    if (code >= 0x80) ASSERT_FALSE(is_utf8(bytes.substr(0, bytes.size() - 1))) << code;
+    if (!surrogate) {
+      ASSERT_EQ(character_size(bytes + "x"), bytes.size()) << code;
+    }
+    if (code >= 0x80) {
+      ASSERT_FALSE(is_utf8(bytes.substr(0, bytes.size() - 1))) << code;
+    }
   }
   // What is left of all sequences of up to two bytes, and the begins of longer ones, is refused: overlong, above U+10FFFF, alone.
   for (unsigned first = 0x80; first < 0x100; ++first) {

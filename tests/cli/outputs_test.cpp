@@ -31,11 +31,11 @@ TEST_F(Outputs, NoCommandWritesOverItsInput) {
   write_bytes(folder / "candidates.csv", "q1,q2,q3,q4,q5,q6\n1,2,3,4,5,6\n");
   ASSERT_EQ(run({"pack", "robot.toml", "-o", "copy.toml"}).exit_code, 0);
   ASSERT_EQ(run_program("ln", {folder / "robot.toml", folder / "link.toml"}).exit_code, 0);
-  struct Case {
+  struct OutputCase {
     std::vector<std::string> arguments;
     std::string input;
   };
-  const std::vector<Case> cases = {
+  const std::vector<OutputCase> cases = {
       {{"sign", "nominal.blob", "--key", "room.key", "-o", "room.key"}, "room.key"},
       {{"sign", "nominal.blob", "--key", "room.key", "-o", "nominal.blob"}, "nominal.blob"},
       {{"sign", "nominal.blob", "--key", "room.key", "-o", "./nominal.blob"}, "nominal.blob"},
@@ -47,7 +47,7 @@ TEST_F(Outputs, NoCommandWritesOverItsInput) {
       {{"convert", "robot.toml", "--urdf", "arm.urdf", "-o", "arm.urdf"}, "arm.urdf"},
       {{"plan", "robot.toml", "--count", "1", "-o", "robot.toml"}, "robot.toml"},
       {{"plan", "robot.toml", "--count", "1", "--candidates", "candidates.csv", "-o", "candidates.csv"}, "candidates.csv"}};
-  for (const Case& c : cases) {
+  for (const OutputCase& c : cases) {
     const std::string before = read_bytes(folder / c.input);
     const auto names = names_in(folder.path());
     const Outcome outcome = run(c.arguments);

@@ -101,11 +101,11 @@ TEST(PosesCommand, RotationsAreAskedAboutAndNamed) {
   text << "id,x,y,z,a,b,c,s1,s2\n1," << table.number(0, "x_mm") << ',' << table.number(0, "y_mm") << ',' << table.number(0, "z_mm")
        << ',' << a * deg << ',' << b * deg << ',' << c * deg << ",25,35\n";
   write_bytes(folder / "poses.csv", text.str());
-  const Outcome joints = run_mdhcal({"inverse", folder / "r.blob", folder / "poses.csv", "--rotation", "kuka"});
-  ASSERT_EQ(joints.exit_code, 0) << joints.err;
-  const CsvTable solved(joints.out);
-  EXPECT_NEAR(solved.number(0, "q1_deg"), 30, 1e-6) << joints.out << text.str();
-  EXPECT_NEAR(solved.number(0, "q2_deg"), 40, 1e-6) << joints.out;
+  const Outcome answer = run_mdhcal({"inverse", folder / "r.blob", folder / "poses.csv", "--rotation", "kuka"});
+  ASSERT_EQ(answer.exit_code, 0) << answer.err;
+  const CsvTable solved(answer.out);
+  EXPECT_NEAR(solved.number(0, "q1_deg"), 30, 1e-6) << answer.out << text.str();
+  EXPECT_NEAR(solved.number(0, "q2_deg"), 40, 1e-6) << answer.out;
 }
 
 // Two URDFs that differ by the rounding of one angle: `forward` prints the same place for both, and what is not the root link's

@@ -21,7 +21,7 @@ using offline::InputError;
   std::abort();
 }
 
-const offline::Robot& six_joints() {
+const offline::Robot& six_joint_robot() {
   static const offline::Robot robot = [] {
     offline::Robot six;
     six.geometry.joint_count = 6;
@@ -61,10 +61,10 @@ void source_target(const std::uint8_t* data, std::size_t size) {
   // Without --rotation most tables with angles end in a question.
   stated.rotation = (size & 1U) != 0U ? "kuka" : "";
   try {
-    const offline::SourceTable table = offline::read_source(bytes, "fuzz", stated, six_joints(), {});
+    const offline::SourceTable table = offline::read_source(bytes, "fuzz", stated, six_joint_robot(), {});
     check_rows(table);
     const bool whole = table.measures && table.has_joints;
-    (void)offline::join({table}, whole ? nullptr : &table, six_joints(), {}, {});
+    (void)offline::join({table}, whole ? nullptr : &table, six_joint_robot(), {}, {});
   } catch (const InputError&) {
     return;
   }
@@ -95,7 +95,7 @@ void program_target(const std::uint8_t* data, std::size_t size) {
 void profile_target(const std::uint8_t* data, std::size_t size) {
   try {
     const offline::Profile profile = offline::parse_profile(std::string(data, data + size), "fuzz.toml", "fuzz");
-    (void)offline::read_source("# n x y z\nP::1::A,1.5,2.5,3.5,4.5,5.5,6.5\nP::2::A,7.5,8.5,9.5,1.5,2.5,3.5\n", "table", profile, six_joints(), {});
+    (void)offline::read_source("# n x y z\nP::1::A,1.5,2.5,3.5,4.5,5.5,6.5\nP::2::A,7.5,8.5,9.5,1.5,2.5,3.5\n", "table", profile, six_joint_robot(), {});
   } catch (const InputError&) {
     return;
   }

@@ -7,6 +7,7 @@
 
 #include "offline/base/error.hpp"
 #include "offline/base/random.hpp"
+#include "offline/robot/rotation.hpp"
 #include "offline/robot/ur_factory.hpp"
 #include "offline/simulate/family.hpp"
 #include "offline/simulate/simulate.hpp"

@@ -163,7 +163,9 @@ TEST(Catalogue, SaysWhereEachArmComesFromAndWhatIsNotConfirmed) {
     EXPECT_FALSE(arm.maker.empty()) << arm.name;
     EXPECT_GE(arm.sources, 1u) << arm.name;
     const std::string text(find_in_catalogue(arm.name)->text);
-    if (arm.sources < 2) EXPECT_NE(text.find("# not confirmed: "), std::string::npos) << arm.name;
+    if (arm.sources < 2) {
+      EXPECT_NE(text.find("# not confirmed: "), std::string::npos) << arm.name;
+    }
     if (arm.sources > 1) ++confirmed;
     // From a table-top arm to a large one, and no arm reaches further than its lengths added up.
     EXPECT_GT(arm.reach_m, 0.2) << arm.name;
