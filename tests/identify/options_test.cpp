@@ -9,6 +9,7 @@
 #include "offline/assess/cross_validation.hpp"
 #include "offline/base/random.hpp"
 #include "offline/identify/folds.hpp"
+#include "offline/identify/mistakes/diagnose.hpp"
 #include "offline/simulate/family.hpp"
 #include "tests/identify/simulated.hpp"
 
@@ -99,12 +100,11 @@ TEST(JointConvention, SignsAndCouplingsAreFollowed) {
   // The same measurements without the coupling in the file: not fitted away, but recognised.
   Robot uncoupled = s.nominal;
   uncoupled.geometry.joint[2].coupling[1] = 0.0;
-  try {
-    (void)calibrate(uncoupled, s.train, {});
-    ADD_FAILURE() << "a missing coupling passed";
-  } catch (const std::runtime_error& e) {
-    EXPECT_NE(std::string(e.what()).find("add [[coupling]] of = 3, by = 2, ratio = 1"), std::string::npos) << e.what();
-  }
+  Calibration c = calibrate(uncoupled, s.train, {});
+  EXPECT_FALSE(c.usable());
+  (void)explain_by_mistakes({uncoupled, s.train, {}}, false, c);
+  ASSERT_FALSE(c.reasons.empty());
+  EXPECT_NE(c.reasons.front().find("[[coupling]] of = 3, by = 2, ratio = 1"), std::string::npos) << c.reasons.front();
 }
 
 Simulation grouped(std::size_t configurations) {

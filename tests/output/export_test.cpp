@@ -14,7 +14,7 @@ using tests::read_bytes;
 using tests::run_mdhcal;
 using tests::run_program;
 
-const std::string blob_path = std::string(MDHCAL_SOURCE_DIR) + "/tests/blob/golden/every-field-1.0.blob";
+const std::string blob_path = std::string(MDHCAL_SOURCE_DIR) + "/tests/blob/golden/written-arithmetic-8-1.0.blob";
 
 // The slot header by hand: magic, sequence, the blob's last four bytes, zeros, CRC-32 by zlib.
 std::string with_header(const std::string& blob, const std::string& sequence_hex) {
