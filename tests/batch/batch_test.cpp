@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <fstream>
 #include <map>
+#include <set>
 
 #include <fcntl.h>
 #include <gtest/gtest.h>
@@ -123,12 +124,21 @@ TEST(Batch, RunsUnderGnuParallel) {
 }
 
 // True if the process has begun to write a result beside its final place in `folder`: at least one file of it is there.
-bool is_writing(const std::string& folder, pid_t process) {
+std::set<std::string> partials_in(const std::string& folder) {
+  std::set<std::string> names;
   std::error_code gone;  // what is listed may be renamed meanwhile
   for (const auto& entry : fs::directory_iterator(folder, gone)) {
     const std::string name = entry.path().filename().string();
-    if (!name.starts_with('.') || !name.ends_with('-' + std::to_string(process))) continue;
-    if (fs::directory_iterator(entry.path(), gone) != fs::directory_iterator()) return true;
+    if (!name.starts_with('.') || name.find(".mdhcal-partial-") == std::string::npos) continue;
+    if (fs::directory_iterator(entry.path(), gone) != fs::directory_iterator()) names.insert(name);
+  }
+  return names;
+}
+
+// Whether there is a part of a result beside those that earlier ones left.
+bool is_writing(const std::string& folder, const std::set<std::string>& left) {
+  for (const std::string& name : partials_in(folder)) {
+    if (!left.contains(name)) return true;
   }
   return false;
 }
@@ -147,6 +157,7 @@ Kill kill_after(const std::vector<std::string>& arguments, useconds_t after_us, 
   std::vector<std::string> copy = arguments;
   for (std::string& a : copy) argv.push_back(a.data());
   argv.push_back(nullptr);
+  const std::set<std::string> left = partials_in(folder);
   const pid_t child = fork();
   if (child == 0) {
     setenv("SOURCE_DATE_EPOCH", "1767225600", 1);
@@ -156,7 +167,7 @@ Kill kill_after(const std::vector<std::string>& arguments, useconds_t after_us, 
     _exit(127);
   }
   siginfo_t ended{};
-  while (writes_in && !is_writing(folder, child)) {
+  while (writes_in && !is_writing(folder, left)) {
     waitid(P_PID, static_cast<id_t>(child), &ended, WEXITED | WNOHANG | WNOWAIT);
     if (ended.si_pid == child) break;
     usleep(50);
@@ -165,7 +176,7 @@ Kill kill_after(const std::vector<std::string>& arguments, useconds_t after_us, 
   kill(child, SIGKILL);
   int status = 0;
   waitpid(child, &status, 0);
-  return {WIFSIGNALED(status), WIFSIGNALED(status) && is_writing(folder, child)};
+  return {WIFSIGNALED(status), WIFSIGNALED(status) && is_writing(folder, left)};
 }
 
 double seconds_of(const std::vector<std::string>& arguments) {

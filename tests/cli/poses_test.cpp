@@ -61,16 +61,10 @@ MDHCAL_SHARED_DATA_TEST(PosesCommand, AProbeTurnedByAQuarterIsCalibratedWith) {
   const std::string residuals = read_bytes(folder / "poses/residuals.csv");
   EXPECT_NE(residuals.substr(0, residuals.find('\n')).find(",rotation_after_z_mrad"), std::string::npos);
   EXPECT_NE(read_bytes(folder / "poses/corrected.toml").find("[tool]\nxyz = ["), std::string::npos);
-  // The corrected robot's own tool is held.
-  const Outcome again = run_mdhcal({"calibrate", folder / "poses/corrected.toml", folder / "train.csv", "--tool", "given", "-o", folder / "again"});
+  // The corrected robot's own tool is held. On the rows that corrected it nothing gets better, hence the reason.
+  const Outcome again = run_mdhcal({"calibrate", folder / "poses/corrected.toml", folder / "train.csv", "--tool", "given", "--accept",
+                                    "corrected on these rows", "-o", folder / "again"});
   EXPECT_EQ(again.exit_code, 0) << again.err;
-  // The same rows with the quaternion's columns named in the wrong order.
-  std::string wrong = read_bytes(folder / "train.csv");
-  wrong.replace(wrong.find("qw,qx,qy,qz"), 11, "qx,qy,qz,qw");
-  write_bytes(folder / "wrong.csv", wrong);
-  const Outcome refused = run_mdhcal({"calibrate", shared_data("ur10_b/robot.toml"), folder / "wrong.csv", "-o", folder / "wrong"});
-  EXPECT_EQ(refused.exit_code, 1);
-  EXPECT_NE(refused.err.find("They fit as qw, qx, qy, qz (--rotation quaternion)"), std::string::npos) << refused.err;
 }
 
 const char* const two_joints = "[[link]]\nalpha = 0\na = 0\nd = 300\ntheta = 0\n[[link]]\nalpha = -90\na = 100\nd = 0\ntheta = 0\n";
