@@ -17,7 +17,9 @@ struct Frames {
 
 /// Both frames the identity: base_T_flange.
 template <class Real>
-inline constexpr Frames<Real> identity_frames{identity_pose<Real>, identity_pose<Real>};
+constexpr Frames<Real> identity_frames() noexcept {
+  return {identity_pose<Real>(), identity_pose<Real>()};
+}
 
 /// The parameters of an arm and its frames that a ramp moves: of each link alpha, a, theta, d, beta; the joints' limits, the
 /// reach; flange, tool and user frame as quaternion and position.

@@ -8,7 +8,9 @@ namespace mdhcal {
 
 /// No rotation, no translation.
 template <class Real>
-inline constexpr Pose<Real> identity_pose{{1, 0, 0, 0}, {0, 0, 0}};
+constexpr Pose<Real> identity_pose() noexcept {
+  return {{1, 0, 0, 0}, {0, 0, 0}};
+}
 
 /// a_T_c = a_T_b b_T_c. Returns ok, or bad_input (a number is not finite, a coordinate is over 1e9 m, or a quaternion is not
 /// a unit one to 1e-6, float 1e-5; a_T_c untouched). a_T_c may be one of the two.

@@ -1,10 +1,15 @@
 // SPDX-License-Identifier: MIT
 #include "mdhcal/arm.hpp"
 
-#include "number/trigonometry.hpp"
 #include "number/compare.hpp"
+#include "number/convert.hpp"
+#include "number/trigonometry.hpp"
 
 namespace mdhcal {
+
+void convert(double from, double& to) noexcept { to = from; }
+void convert(float from, double& to) noexcept { to = static_cast<double>(from); }
+void convert(double from, float& to) noexcept { to = static_cast<float>(from); }
 
 namespace {
 

@@ -4,6 +4,7 @@
 #include <cstring>
 
 #include "mdhcal/mdhcal.hpp"
+#include "number/convert.hpp"
 #include "number/real.hpp"
 
 #include "arm/rotation.hpp"
@@ -164,8 +165,10 @@ std::int32_t C(describe_joint)(const C(calibrated_arm)* arm, std::int32_t index,
   joint->slides = static_cast<std::int32_t>((a->corrected.prismatic_mask >> shift) & 1U);
   joint->has_min = static_cast<std::int32_t>((a->corrected.min_mask >> shift) & 1U);
   joint->has_max = static_cast<std::int32_t>((a->corrected.max_mask >> shift) & 1U);
-  joint->min = joint->has_min != 0 ? static_cast<double>(a->corrected.min[index]) : 0.0;
-  joint->max = joint->has_max != 0 ? static_cast<double>(a->corrected.max[index]) : 0.0;
+  joint->min = 0;
+  joint->max = 0;
+  if (joint->has_min != 0) convert(a->corrected.min[index], joint->min);
+  if (joint->has_max != 0) convert(a->corrected.max[index], joint->max);
   return number(Status::ok);
 }
 
@@ -180,8 +183,8 @@ std::int32_t C(find_target)(const C(calibrated_arm)* arm, const char* name, C(po
   const CalibratedArm<Real>* a = arm_in(arm);
   const Target* target = a == nullptr ? nullptr : find_target(a->description, name);
   if (target == nullptr || flange_T_target == nullptr) return refused;
-  to_c(identity_pose<Real>, *flange_T_target);
-  for (int k = 0; k < 3; ++k) flange_T_target->position_m[k] = static_cast<Real>(target->flange_p_m[k]);
+  to_c(identity_pose<Real>(), *flange_T_target);
+  for (int k = 0; k < 3; ++k) convert(target->flange_p_m[k], flange_T_target->position_m[k]);
   return number(Status::ok);
 }
 

@@ -255,7 +255,7 @@ Status start_at_rest(const CalibratedArm<Real>& arm, Model model, Compensator<Re
   compensator.mark = compensator_mark;
   compensator.nominal = arm.nominal;
   compensator.goal_arm = model == Model::corrected ? arm.corrected : arm.nominal;
-  compensator.goal_frames = identity_frames<Real>;
+  compensator.goal_frames = identity_frames<Real>();
   place(compensator);
   return Status::ok;
 }

@@ -142,7 +142,7 @@ TYPED_TEST(LoopProperty, RampsAreSmoothWhereverTheyAreBegun) {
           ASSERT_LE(std::fabs(second), bound) << "tick " << n;
         }
       }
-      ASSERT_EQ(start_frame_ramp(loop, identity_frames<Real>, 50), Status::ok);
+      ASSERT_EQ(start_frame_ramp(loop, identity_frames<Real>(), 50), Status::ok);
       ASSERT_EQ(start_ramp(loop, blob[1], Model::corrected, 100), Status::ok);
       for (int n = 0; n < 100; ++n) ASSERT_EQ(advance_ramp(loop), Status::ok);
       EXPECT_EQ(ramp_ticks_left(loop), 0U);
