@@ -14,4 +14,5 @@
 #include "mdhcal/self_test.hpp"
 #include "mdhcal/solutions.hpp"
 #include "mdhcal/status.hpp"
+#include "mdhcal/transmission.hpp"
 #include "mdhcal/velocities.hpp"
