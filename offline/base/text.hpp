@@ -19,7 +19,7 @@ bool is_utf8(std::string_view text);
 void require_text(std::string_view text, const std::string& path, const std::string& expected);
 
 /// Text for people: control characters other than tab and line feed (of Unicode's C0, C1 and DEL), which a terminal would obey,
-/// and bytes that are no UTF-8, as \x1B.
+/// and bytes that are no UTF-8, as a backslash, x and two hexadecimal digits.
 std::string printable(std::string_view text);
 
 /// The longest begin of a text that has at most `most` bytes and ends between two characters.

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 #include <map>
+#include <ostream>
 
 #include <Eigen/QR>
 #include <gtest/gtest.h>
@@ -147,6 +148,8 @@ struct Sets {
   std::size_t count;
   std::vector<Case> cases;
 };
+
+void PrintTo(const Sets& sets, std::ostream* to) { *to << sets.count << " poses"; }
 
 class PlanGain : public testing::TestWithParam<Sets> {};
 

@@ -50,9 +50,7 @@ const Compensator<Real>* compensator_in(const C(compensator)* storage) {
 }
 
 Compensator<Real>* compensator_in(C(compensator)* storage) {
-  if (!aligned(storage)) return nullptr;
-  Compensator<Real>* compensator = static_cast<Compensator<Real>*>(static_cast<void*>(storage));
-  return valid(*compensator) ? compensator : nullptr;
+  return const_cast<Compensator<Real>*>(compensator_in(static_cast<const C(compensator)*>(storage)));
 }
 
 const Arm<Real>* model_in(const C(calibrated_arm)* storage, std::int32_t model) {

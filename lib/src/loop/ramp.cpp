@@ -19,11 +19,21 @@ using Parameters = RampParameters<Real>;
 
 constexpr Real half_turn = Real(3.14159265358979323846);
 
-// The quintics and their slopes by s = tick / ticks.
-Real fall(Real s) { return Real{1} - s * s * s * (Real{10} - s * (Real{15} - Real{6} * s)); }
+// The quintics and their slopes by s = tick / ticks, in factors of what is left of the way: no difference of nearly equal
+// numbers, and the soft double of libgcc for Arm rounds one of numbers 2^33 apart to the wrong side.
+Real fall(Real s) {
+  const Real left = Real{1} - s;
+  return left * left * left * (Real{10} - left * (Real{15} - Real{6} * left));
+}
 Real fall_slope(Real s) { return Real{-30} * (s * s) * ((Real{1} - s) * (Real{1} - s)); }
-Real drift(Real s) { return s - s * s * s * (Real{6} - s * (Real{8} - Real{3} * s)); }
-Real drift_slope(Real s) { return Real{1} - s * s * (Real{18} - s * (Real{32} - Real{15} * s)); }
+Real drift(Real s) {
+  const Real left = Real{1} - s;
+  return s * (left * left * left) * (Real{1} + Real{3} * s);
+}
+Real drift_slope(Real s) {
+  const Real left = Real{1} - s;
+  return left * left * ((Real{1} - Real{3} * s) * (Real{1} + Real{5} * s));
+}
 
 // What of offset and rate is left, and how fast it goes [1/tick].
 struct Weights {

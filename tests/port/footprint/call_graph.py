@@ -84,7 +84,7 @@ class CallGraph:
                 unknown.add("a call through a pointer")
                 return 0
             if at not in self.frame:
-                unknown.add(str(at))
+                unknown.add(at if isinstance(at, str) else at[1].rsplit(":", 1)[-1])
                 return 0
             active.add(at)
             below = max((deepest(callee) for callee in self.calls.get(at, ())), default=0)
