@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: MIT
-// A new calibration while the loop runs: loaded in the background, handed over by a pointer, taken over by a ramp.
+// A new calibration while the loop runs: loaded beside it, handed over by an atomic pointer, taken over by a ramp.
 //   swap_calibration OLD.blob NEW.blob
 #include <atomic>
 #include <cstdio>
-#include <thread>
 
 #include "mdhcal/mdhcal.hpp"
 
@@ -33,12 +32,10 @@ int main(int count, char** arguments) {
   const double nominal_q[max_joints] = {0.5, 0.4, 0.6, 0.5, 0.7, 0.5, 0.5, 0.5};
   double q[max_joints] = {0.5, 0.4, 0.6, 0.5, 0.7, 0.5, 0.5, 0.5};
 
-  std::thread background([&] {
-    if (load_file(arguments[2], arms[1])) handed_over.store(&arms[1]);
-  });
-  background.join();  // of a real program: at its end
   for (int tick = 0; tick < 1000; ++tick) {
-    // The compensator belongs to this thread; start_ramp() copies, so that the other may reuse the arm afterwards.
+    // What a task of lower priority does meanwhile, at a time of its own.
+    if (tick == 100 && load_file(arguments[2], arms[1])) handed_over.store(&arms[1]);
+    // The compensator belongs to the loop; start_ramp() copies, so that the other task may reuse the arm afterwards.
     if (const CalibratedArm<double>* next = handed_over.exchange(nullptr)) {
       if (start_ramp(loop, *next, Model::corrected, 400) != Status::ok) std::printf("refused: another robot\n");
     }

@@ -10,6 +10,7 @@
 #include "offline/import/program.hpp"
 #include "offline/import/table.hpp"
 #include "offline/import/text.hpp"
+#include "offline/import/units_check.hpp"
 #include "offline/measure/rotations.hpp"
 
 namespace mdhcal::offline {
@@ -57,7 +58,8 @@ class TableReader {
   SourceTable read() {
     find_meanings();
     find_points();
-    check_units();
+    const std::string question = question_of_units(meanings_, table_, robot_, profile_);
+    if (!question.empty()) ask(question);
     for (std::size_t k = 0; k < table_.rows.size(); ++k) read_row(table_.rows[k], k);
     out_.row_count = table_.rows.size();
     add_notes();
@@ -229,32 +231,6 @@ class TableReader {
   const Unit& joint_unit(const Meaning& m) const {
     const bool prismatic = robot_.geometry.joint[m.index].kind == JointKind::prismatic;
     return prismatic ? unit_of(m, profile_.length_unit, millimetre) : unit_of(m, profile_.joint_unit, degree);
-  }
-
-  // A column in a unit of another kind, and joints in what may well be radians.
-  void check_units() const {
-    const auto is_angle = [](const Unit& unit) { return unit.name == "deg" || unit.name == "rad" || unit.name == "mrad" || unit.name == "gon"; };
-    const auto is_time = [](const Unit& unit) { return unit.name == "s" || unit.name == "ms"; };
-    double largest = 0;
-    bool stated = true;
-    for (std::size_t k = 0; k < meanings_.size(); ++k) {
-      const Meaning& m = meanings_[k];
-      if (m.unit != nullptr) {
-        const bool angle = m.quantity == Quantity::rotation || (m.quantity == Quantity::spherical && m.index != 2) ||
-                           (m.quantity == Quantity::joint && robot_.geometry.joint[m.index].kind == JointKind::revolute);
-        const bool length = m.quantity == Quantity::position || m.quantity == Quantity::sigma || m.quantity == Quantity::expanded ||
-                            (m.quantity == Quantity::spherical && m.index == 2) || (m.quantity == Quantity::joint && !angle);
-        const bool good = angle ? is_angle(*m.unit) : length ? !is_angle(*m.unit) && !is_time(*m.unit) : m.quantity != Quantity::time || is_time(*m.unit);
-        if (!good) ask("Found the unit \"" + std::string(m.unit->name) + "\" on column " + std::to_string(k + 1) + ", which is of another kind than what is measured there; expected " + (angle ? "deg or rad." : "mm or m."));
-      }
-      if (m.quantity != Quantity::joint || robot_.geometry.joint[m.index].kind == JointKind::prismatic) continue;
-      if (m.unit == nullptr && profile_.joint_unit.empty()) stated = false;
-      for (const TableRow& row : table_.rows) largest = std::max(largest, std::abs(parse_number(row.fields[k].text, table_.decimal).value_or(0)));
-    }
-    // A turn is 6.28 rad; a set of poses that spans less than that in degrees identifies nothing.
-    if (!stated && table_.rows.size() >= 4 && largest > 0 && largest <= 6.4) {
-      ask("Found joints without a unit, all of them below 6.4; expected --joint-unit rad (or deg) to say what they are in.");
-    }
   }
 
   double number(const TableRow& row, std::size_t column, const Unit& unit, double bound) const {

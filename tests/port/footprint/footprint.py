@@ -2,8 +2,8 @@
 # SPDX-License-Identifier: MIT
 """What the library costs on the targets.
 
-footprint.py [PRESET...]            build what is needed and print the tables of docs/footprint.md
-footprint.py --write [PRESET...]    print them, and put them into docs/footprint.md; other presets' stay as they are
+footprint.py [PRESET...]            build what is needed and print the tables
+footprint.py --write [PRESET...]    print them, put them into baseline/, and what was asked for into docs/footprint.md
 footprint.py --check PRESET [BUILD] measure one built preset; fail if a figure has grown by more than 5 % over the tables,
                                     or is over what was asked for (budgets.py)
 """
@@ -24,6 +24,7 @@ PRESETS = [*MACHINES, "armhf", "aarch64", "host"]
 USER_MODE = {"armhf": ["qemu-arm", "-L", "/usr/arm-linux-gnueabihf"],
              "aarch64": ["qemu-aarch64", "-L", "/usr/aarch64-linux-gnu"], "host": ["qemu-x86_64"]}
 DOCUMENT = ROOT / "docs/footprint.md"
+BASELINE = pathlib.Path(__file__).parent / "baseline"
 GROWTH = 1.05
 COSTS = ["function", "precision", "inputs", "count", "min", "median", "max", "stack painted"]
 ASKED = ["on", "what", "asked, at most", "measured"]
@@ -123,9 +124,9 @@ def names(row):
     return tuple(cell for cell in row if not is_number(cell))
 
 
-def recorded(heading):
-    """Rows of one table of the document, by their names."""
-    text = DOCUMENT.read_text()
+def recorded(preset, heading):
+    """Rows of one table of the baseline, by their names."""
+    text = (BASELINE / f"{preset}.md").read_text()
     if heading not in text:
         return {}
     rows = {}
@@ -153,10 +154,10 @@ def check(target):
     failures = 0
     parts = tables(target)
     for heading, header, rows in parts:
-        old = recorded(heading)
+        old = recorded(target.preset, heading)
         for row in rows:
             if names(row) not in old:
-                print(f"{target.preset}: {' '.join(names(row))} is not in docs/footprint.md")
+                print(f"{target.preset}: {' '.join(names(row))} is not in the baseline")
                 failures += 1
                 continue
             for title, before, now in zip(header, old[names(row)], row):
@@ -178,28 +179,15 @@ def check(target):
 
 
 def write(texts, asked):
-    """Puts the tables of some presets into the document."""
-    text = DOCUMENT.read_text()
-
-    def between(name, new_content):
-        nonlocal text
-        begin, end = f"<!-- {name} -->\n", f"<!-- end of {name} -->"
-        head, rest = text.split(begin)
-        old, tail = rest.split(end)
-        text = head + begin + "\n" + new_content(old) + end + tail
-
-    def all_asked(old):
-        rows = [[cell.strip() for cell in line.strip("|").split(" | ")] for line in old.splitlines() if line.startswith("|")]
-        kept = {preset: [row for row in rows[2:] if row[0] == preset] for preset in PRESETS}
-        return markdown(ASKED, sum({**kept, **asked}.values(), [])) + "\n"
-
-    def all_tables(old):
-        kept = {preset: "".join(re.findall(rf"^### {preset}:.*?(?=^### |\Z)", old, re.M | re.S)) for preset in PRESETS}
-        return "\n".join(part.strip() + "\n" for part in {**kept, **texts}.values() if part) + "\n"
-
-    between("asked", all_asked)
-    between("tables", all_tables)
-    DOCUMENT.write_text(text)
+    """Puts the tables of some presets into the baseline, and what was asked for into the document."""
+    for preset, text in texts.items():
+        (BASELINE / f"{preset}.md").write_text(text)
+    head, rest = DOCUMENT.read_text().split("<!-- asked -->\n")
+    old, tail = rest.split("<!-- end of asked -->")
+    rows = [[cell.strip() for cell in line.strip("|").split(" | ")] for line in old.splitlines() if line.startswith("|")]
+    kept = {preset: [row for row in rows[2:] if row[0] == preset] for preset in PRESETS}
+    table = markdown(ASKED, sum({**kept, **asked}.values(), []))
+    DOCUMENT.write_text(f"{head}<!-- asked -->\n\n{table}\n<!-- end of asked -->{tail}")
 
 
 def build(preset):
