@@ -3,10 +3,12 @@
 
 #include <fcntl.h>
 #include <sys/file.h>
+#include <sys/random.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include <cerrno>
+#include <cinttypes>
 #include <climits>
 #include <cstdio>
 #include <cstring>
@@ -98,11 +100,14 @@ bool sync_folder_of(const char* path) {
 }
 
 // link() refuses to replace, so of two processes that make the file at once one wins and the other opens the winner's.
+// Its name until then is random and new: in a shared folder nobody can have put a link there.
 bool make_erased(const char* path, const FlashGeometry& geometry) {
   char beside[PATH_MAX];
-  const int length = std::snprintf(beside, sizeof beside, "%s.%ld.part", path, static_cast<long>(getpid()));
+  std::uint64_t random = 0;
+  if (getrandom(&random, sizeof random, 0) != static_cast<ssize_t>(sizeof random)) return false;
+  const int length = std::snprintf(beside, sizeof beside, "%s.%016" PRIx64 ".part", path, random);
   if (length < 0 || static_cast<std::size_t>(length) >= sizeof beside) return false;
-  const int descriptor = ::open(beside, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
+  const int descriptor = ::open(beside, O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0644);
   if (descriptor < 0) return false;
   bool done = true;
   for (std::uint32_t sector = 0; done && sector < geometry.sector_count; ++sector) {

@@ -74,6 +74,17 @@ TEST_F(PosixStore, IsMadeErasedAndKeepsWhatItIsGiven) {
   EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder_), {}), 1);
 }
 
+// A link where the file is made, under the name that a process number alone would give: what it leads to stays.
+TEST_F(PosixStore, IsNotMadeThroughALinkThatSomeonePut) {
+  const std::filesystem::path other = folder_ / "other";
+  std::filesystem::create_directory(other);
+  std::filesystem::create_symlink(other / "theirs", path_ + '.' + std::to_string(getpid()) + ".part");
+  PosixFlash flash;
+  EXPECT_EQ(open_posix_flash(path_.c_str(), geometry, flash), Status::ok);
+  close_posix_flash(flash);
+  EXPECT_TRUE(std::filesystem::is_empty(other));
+}
+
 TEST_F(PosixStore, RefusesAnotherSizeASecondOwnerAndAFolderThatIsNotThere) {
   PosixFlash flash;
   ASSERT_EQ(open_posix_flash(path_.c_str(), geometry, flash), Status::ok);
