@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "blob/blob_fields.hpp"
 
-#include <cstring>
+#include <string.h>
 
 namespace mdhcal {
 
@@ -30,11 +30,11 @@ void load_vector(const std::uint8_t* p, SelfTestVector<Real>& vector) {
 
 void load_provenance(const std::uint8_t* bytes, BlobProvenance& out) {
   const std::uint32_t flags = load_u32(bytes + at::flags);
-  std::memcpy(out.tool_version, bytes + at::tool_version, at::tool_version_size);
-  std::memcpy(out.date, bytes + at::date, at::date_size);
-  std::memcpy(out.method, bytes + at::method, at::method_size);
-  std::memcpy(out.lambda_rule, bytes + at::lambda_rule, at::lambda_rule_size);
-  std::memcpy(out.measurements_sha256, bytes + at::measurements_sha256, at::sha256_size);
+  memcpy(out.tool_version, bytes + at::tool_version, at::tool_version_size);
+  memcpy(out.date, bytes + at::date, at::date_size);
+  memcpy(out.method, bytes + at::method, at::method_size);
+  memcpy(out.lambda_rule, bytes + at::lambda_rule, at::lambda_rule_size);
+  memcpy(out.measurements_sha256, bytes + at::measurements_sha256, at::sha256_size);
   out.pose_count = load_u32(bytes + at::pose_count);
   out.held_out_count = load_u32(bytes + at::held_out_count);
   out.has_measurements = (flags & at::flag_calibrated) != 0U ? 1 : 0;
@@ -111,15 +111,15 @@ void load_geometry(const std::uint8_t* bytes, Geometry& geometry) noexcept {
 void load_model(const std::uint8_t* bytes, BlobContent& model) noexcept {
   load_geometry(bytes, model.geometry);
   for (std::size_t i = 0; i < max_joints; ++i) model.nominal[i] = load_link(bytes, i, at::joint::nominal);
-  std::memcpy(model.name, bytes + at::name, at::name_size);
-  std::memcpy(model.serial, bytes + at::serial, at::serial_size);
+  memcpy(model.name, bytes + at::name, at::name_size);
+  memcpy(model.serial, bytes + at::serial, at::serial_size);
   model.has_base = (load_u32(bytes + at::flags) & at::flag_base) != 0U ? 1 : 0;
   load_pose(bytes + at::tracker_T_base, model.tracker_T_base);
   if (model.has_base == 0) model.tracker_T_base.quaternion[0] = 1.0;
   model.target_count = load_i32(bytes + at::target_count);
   for (std::size_t i = 0; i < max_targets; ++i) {
     const std::uint8_t* record = bytes + at::targets + i * at::target_size;
-    std::memcpy(model.target[i].name, record, at::target_name_size);
+    memcpy(model.target[i].name, record, at::target_name_size);
     for (std::size_t k = 0; k < 3; ++k) model.target[i].flange_p_m[k] = load_f64(record + at::target_point + 8 * k);
   }
   model.family = static_cast<ArmFamily>(load_i32(bytes + at::family));
@@ -135,8 +135,8 @@ void load_model(const std::uint8_t* bytes, BlobContent& model) noexcept {
     load_vector(bytes + at::float_vectors + i * at::float_vector_size, model.float_vector[i]);
   }
   model.authentication.algorithm = load_u32(bytes + at::algorithm);
-  std::memcpy(model.authentication.key_id, bytes + at::key_id, at::key_id_size);
-  std::memcpy(model.authentication.signature, bytes + at::signature, at::signature_size);
+  memcpy(model.authentication.key_id, bytes + at::key_id, at::key_id_size);
+  memcpy(model.authentication.signature, bytes + at::signature, at::signature_size);
 }
 
 }  // namespace mdhcal

@@ -3,7 +3,7 @@
 #pragma once
 
 #include <cstdint>
-#include <cstring>
+#include <string.h>
 
 namespace mdhcal {
 
@@ -19,21 +19,21 @@ static inline std::uint32_t load_u32(const std::uint8_t* p) {
 static inline std::int32_t load_i32(const std::uint8_t* p) {
   const std::uint32_t bits = load_u32(p);
   std::int32_t value = 0;
-  std::memcpy(&value, &bits, sizeof value);
+  memcpy(&value, &bits, sizeof value);
   return value;
 }
 
 static inline double load_f64(const std::uint8_t* p) {
   const std::uint64_t bits = static_cast<std::uint64_t>(load_u32(p)) | static_cast<std::uint64_t>(load_u32(p + 4)) << 32U;
   double value = 0.0;
-  std::memcpy(&value, &bits, sizeof value);
+  memcpy(&value, &bits, sizeof value);
   return value;
 }
 
 static inline float load_f32(const std::uint8_t* p) {
   const std::uint32_t bits = load_u32(p);
   float value = 0.0F;
-  std::memcpy(&value, &bits, sizeof value);
+  memcpy(&value, &bits, sizeof value);
   return value;
 }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "mdhcal/self_test.hpp"
 
-#include <cstring>
+#include <string.h>
 
 #include "mdhcal/inverse.hpp"
 #include "mdhcal/kinematics.hpp"
@@ -61,9 +61,9 @@ Status run(const SelfTestVector<Real>& vector, const Arm<Real>& arm, const Share
   bool passed = true;
   if (bits) {
     passed = static_cast<std::int32_t>(status) == vector.inverse_status &&
-             std::memcmp(pose.quaternion, vector.base_T_flange.quaternion, sizeof pose.quaternion) == 0 &&
-             std::memcmp(pose.position_m, vector.base_T_flange.position_m, sizeof pose.position_m) == 0 &&
-             std::memcmp(q, vector.inverse_q, sizeof q) == 0;
+             memcmp(pose.quaternion, vector.base_T_flange.quaternion, sizeof pose.quaternion) == 0 &&
+             memcmp(pose.position_m, vector.base_T_flange.position_m, sizeof pose.position_m) == 0 &&
+             memcmp(q, vector.inverse_q, sizeof q) == 0;
   } else {
     passed = near(pose, vector.base_T_flange, share.bound);
     // Where the host's inverse did not arrive, another arithmetic need not stop in the same place.

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "mdhcal.h"
 
-#include <cstring>
+#include <string.h>
 
 #include "mdhcal/mdhcal.hpp"
 #include "number/convert.hpp"
@@ -173,7 +173,7 @@ std::int32_t C(describe_joint)(const C(calibrated_arm)* arm, std::int32_t index,
 std::int32_t C(describe)(const C(calibrated_arm)* arm, mdhcal_description* description) {
   const CalibratedArm<Real>* a = arm_in(arm);
   if (a == nullptr || description == nullptr) return refused;
-  std::memcpy(description, &a->description, sizeof *description);
+  memcpy(description, &a->description, sizeof *description);
   return number(Status::ok);
 }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "mdhcal/environment.hpp"
 
-#include <cfloat>
+#include <float.h>
 
 namespace mdhcal {
 

@@ -3,7 +3,7 @@
 // linkage would be weak symbols, which a consumer's own copy could replace at link time.
 #pragma once
 
-#include <cfloat>
+#include <float.h>
 
 #include "number/square_root.hpp"
 

@@ -2,8 +2,10 @@
 // Private to lib/src; include after real.hpp. The sine and cosine as inline code, for where a call would count.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
-#include <cstring>
+
+#include <string.h>
 
 #include "number/compare.hpp"
 #include "number/real.hpp"
@@ -97,10 +99,10 @@ inline Real nearest(Real x, std::uint32_t& bits) {
   const Real sum = x + Trig::rounder;
   if constexpr (sizeof(Real) == sizeof(std::uint64_t)) {
     std::uint64_t whole = 0;
-    std::memcpy(&whole, &sum, sizeof whole);
+    memcpy(&whole, &sum, sizeof whole);
     bits = static_cast<std::uint32_t>(whole);
   } else {
-    std::memcpy(&bits, &sum, sizeof bits);
+    memcpy(&bits, &sum, sizeof bits);
   }
   return sum - Trig::rounder;
 }

@@ -4,19 +4,19 @@
 #pragma once
 
 #include <cstdint>
-#include <cstring>
+#include <string.h>
 
 namespace mdhcal {
 
 static inline double integer_square_root(double x) {
   std::uint64_t bits = 0;
-  std::memcpy(&bits, &x, sizeof bits);
+  memcpy(&bits, &x, sizeof bits);
   constexpr std::uint64_t infinity = 0x7FF0000000000000U;
   constexpr std::uint64_t hidden = 1ULL << 52U;
   if ((bits << 1U) == 0 || bits == infinity) return x;  // +-0, infinity
   if (bits > infinity) {                                // negative or NaN
     bits = (bits & ~(1ULL << 63U)) > infinity ? bits : 0x7FF8000000000000U;
-    std::memcpy(&x, &bits, sizeof x);
+    memcpy(&x, &bits, sizeof x);
     return x;
   }
   std::int32_t exponent = static_cast<std::int32_t>(bits >> 52U);
@@ -51,7 +51,7 @@ static inline double integer_square_root(double x) {
   }
   bits = (root >> 1U) + (root & 1U);
   bits += static_cast<std::uint64_t>(exponent / 2 + 1022) << 52U;  // the hidden bit adds the last one
-  std::memcpy(&x, &bits, sizeof x);
+  memcpy(&x, &bits, sizeof x);
   return x;
 }
 

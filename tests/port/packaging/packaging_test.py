@@ -5,15 +5,24 @@ import json
 import os
 import pathlib
 import re
+import struct
 import subprocess
 import sys
 import tempfile
 import unittest
+import zlib
 
 HERE = pathlib.Path(__file__).resolve().parent
 ROOT = HERE.parents[2]
 PACKAGING = ROOT / "cmake/packaging"
 BOARD = ROOT / "port/cortex_m"
+BLOB = max((ROOT / "tests/blob/golden").glob("written-arithmetic-*.blob"), key=lambda path: int(path.name.split("-")[2]))
+
+
+def slot(blob, sequence):
+    """A slot of 8 KiB with this blob, docs/blob.md."""
+    head = struct.pack("<IIII", 0xECB2A0FD, sequence, int.from_bytes(blob[-4:], "little"), 0) + bytes(12)
+    return (head + struct.pack("<I", zlib.crc32(head)) + blob).ljust(8192, b"\xff")
 
 
 class Packaging(unittest.TestCase):
@@ -121,16 +130,34 @@ class Packaging(unittest.TestCase):
                    HERE / "consumer/consumer.cpp", *objects, *self.startup(), *self.link, "-o", program])
         self.execute(program)
 
-    def test_zephyr_module(self):
-        module = PACKAGING / "zephyr"
-        text = (module / "zephyr/module.yml").read_text()
-        self.assertIn("cmake: .", text)
-        self.assertTrue((module / re.search(r"kconfig: (\S+)", text).group(1)).exists())
-        self.execute(self.build("zephyr", HERE / "zephyr_like", f"-DMODULE={module}",
-                                f"-DCONSUMER={HERE / 'consumer/consumer.cpp'}", "-DCMAKE_EXPORT_COMPILE_COMMANDS=ON"))
-        commands = json.loads((self.here / "zephyr/compile_commands.json").read_text())
-        ours = [entry["command"] for entry in commands if "/lib/src/" in entry["file"]]
-        self.assertTrue(ours and all("FROM_ZEPHYR" in command for command in ours))
+    def zephyr(self, name, application):
+        return self.build(name, application, f"-DZephyr_DIR={HERE / 'zephyr_like'}", f"-DEXTRA_ZEPHYR_MODULES={ROOT}",
+                          "-DCMAKE_SYSTEM_NAME=Generic", "-DCMAKE_EXPORT_COMPILE_COMMANDS=ON")
+
+    def test_zephyr_application_in_c(self):
+        self.execute(self.zephyr("zephyr_c", HERE / "zephyr_like/c_app"))
+        commands = json.loads((self.here / "zephyr_c/compile_commands.json").read_text())
+        ours = [entry["command"].split() for entry in commands if "/lib/src/" in entry["file"] or "/port/src/" in entry["file"]]
+        self.assertGreater(len(ours), 20)
+        for command in ours:  # the last option of a kind is the one that holds
+            self.assertIn("-DFROM_ZEPHYR=1", command)
+            self.assertIn("-std=c++11", command)
+            self.assertEqual([option for option in command if option.startswith("-std=")][-1], "-std=c++17")
+        tick = next(command for command in ours if command[-1].endswith("inverse/inverse.cpp"))
+        self.assertEqual([option for option in tick if option.startswith("-O")][-1], "-O2")
+
+    def test_zephyr_sample(self):
+        program = self.zephyr("zephyr_sample", ROOT / "port/zephyr/sample")
+        flash = self.here / "flash.bin"
+        environment = {**os.environ, "FLASH": str(flash)}
+        empty = subprocess.run([program], capture_output=True, text=True, env=environment, timeout=60)
+        self.assertEqual((empty.returncode, empty.stdout), (1, ": no acceptable blob stored\n"))
+        # Slot 1 is newer, and damaged: the blob of slot 0 is taken.
+        blob = BLOB.read_bytes()
+        damaged = blob[:100] + bytes([blob[100] ^ 1]) + blob[101:]
+        flash.write_bytes((slot(blob, 7) + slot(damaged, 8)).ljust(32768, b"\xff"))
+        done = self.run_([program], env=environment, timeout=60)
+        self.assertRegex(done, r"^[^\n]+: ok\n1000 ticks, joint 1 moved to 5\d{5} urad: ok\n$")
 
     def test_esp_idf_component(self):
         self.execute(self.build("esp_idf", HERE / "esp_idf_like", f"-DMODULE={PACKAGING / 'esp-idf/mdhcal'}",

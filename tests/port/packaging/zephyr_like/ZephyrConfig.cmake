@@ -1,0 +1,65 @@
+# SPDX-License-Identifier: MIT
+# Stands in for Zephyr's CMake package on a host: the functions that a module and an application call do to targets and
+# flags what Zephyr's do. zephyr_interface is an INTERFACE library; what is linked to the image is linked to it; its options
+# come after those of a target that links to it; C++ headers are those of the minimal library. The application is `app`.
+project(zephyr_like LANGUAGES C CXX)
+set(ZEPHYR_LIKE "${CMAKE_CURRENT_LIST_DIR}")
+set_property(GLOBAL PROPERTY ZEPHYR_LIBS "")
+
+add_library(zephyr_interface INTERFACE)
+function(zephyr_compile_options)
+  target_compile_options(zephyr_interface INTERFACE ${ARGN})
+endfunction()
+function(zephyr_link_libraries)
+  target_link_libraries(zephyr_interface INTERFACE ${ARGN})
+endfunction()
+macro(zephyr_library_named name)
+  set(ZEPHYR_CURRENT_LIBRARY ${name})
+  add_library(${name} STATIC "")
+  set_property(GLOBAL APPEND PROPERTY ZEPHYR_LIBS ${name})
+  target_link_libraries(${name} PUBLIC zephyr_interface)
+endmacro()
+function(zephyr_library_sources)
+  target_sources(${ZEPHYR_CURRENT_LIBRARY} PRIVATE ${ARGN})
+endfunction()
+function(zephyr_library_compile_options)
+  add_library(${ZEPHYR_CURRENT_LIBRARY}_options INTERFACE)
+  target_compile_options(${ZEPHYR_CURRENT_LIBRARY}_options INTERFACE ${ARGN})
+  target_link_libraries(${ZEPHYR_CURRENT_LIBRARY} PRIVATE ${ZEPHYR_CURRENT_LIBRARY}_options)
+endfunction()
+
+# The application's configuration, and the defaults of the module's own options.
+file(STRINGS "${CMAKE_SOURCE_DIR}/prj.conf" lines REGEX "^CONFIG_.*=y")
+foreach(line IN LISTS lines)
+  string(REPLACE "=y" "" name "${line}")
+  set(${name} y)
+endforeach()
+if(CONFIG_MDHCAL AND CONFIG_FLASH_MAP AND CONFIG_FLASH_PAGE_LAYOUT)
+  set(CONFIG_MDHCAL_FLASH y)
+endif()
+set(dialect -std=c++11)
+if(CONFIG_STD_CPP17)
+  set(dialect -std=c++17)
+endif()
+
+zephyr_compile_options(-Os -DFROM_ZEPHYR=1 $<$<COMPILE_LANGUAGE:CXX>:${dialect}> $<$<COMPILE_LANGUAGE:CXX>:-nostdinc++>
+                       $<$<COMPILE_LANGUAGE:CXX>:-fno-exceptions> $<$<COMPILE_LANGUAGE:CXX>:-fno-rtti>)
+target_include_directories(zephyr_interface INTERFACE "${ZEPHYR_LIKE}/include")
+target_include_directories(zephyr_interface SYSTEM INTERFACE "${ZEPHYR_LIKE}/cpp")
+zephyr_library_named(app)
+
+# The modules, as west finds them: <module>/zephyr/module.yml.
+foreach(module IN LISTS EXTRA_ZEPHYR_MODULES)
+  file(READ "${module}/zephyr/module.yml" text)
+  string(REGEX MATCH "kconfig: ([^\n]+)" found "${text}")
+  if(NOT EXISTS "${module}/${CMAKE_MATCH_1}")
+    message(FATAL_ERROR "${module}/zephyr/module.yml: kconfig: ${CMAKE_MATCH_1} is not there.")
+  endif()
+  string(REGEX MATCH "cmake: ([^\n]+)" found "${text}")
+  add_subdirectory("${module}/${CMAKE_MATCH_1}" "${CMAKE_BINARY_DIR}/modules/mdhcal")
+endforeach()
+
+get_property(libraries GLOBAL PROPERTY ZEPHYR_LIBS)
+add_executable(consumer "${ZEPHYR_LIKE}/kernel.c")
+target_include_directories(consumer PRIVATE "${ZEPHYR_LIKE}/include")
+target_link_libraries(consumer PRIVATE -Wl,--whole-archive ${libraries} -Wl,--no-whole-archive zephyr_interface)
