@@ -247,11 +247,15 @@ void identify(Work& work, Calibration& out) {
   const Dataset& data = out.training;
   const UnknownsOptions unknowns_asked = unknowns_options(work.options);
   out.noise_mm = unknowns_asked.noise_mm;
+  check_poses(data, out.training_rows, choose_unknowns(work.robot, data, out.training_rows, unknowns_asked).layout);
+  out.contradiction = why_rotations_contradict(work.robot, data, out.training_rows, unknowns_asked);
+  if (!out.contradiction.empty()) {
+    leave_out_rotations(out.training);
+    leave_out_rotations(out.testing);
+  }
   work.unknowns = choose_unknowns(work.robot, data, out.training_rows, unknowns_asked);
   out.layout = work.unknowns.layout;
   out.decisions = work.unknowns.parameters.decisions;
-  check_poses(work.robot, data, out.training_rows, work.unknowns);
-  check_rotations(work.robot, data, out.training_rows, unknowns_asked);
 
   work.selection.rows = out.training_rows;
   const Fit nominal = fit_frames(work.unknowns, data, work.selection, out.noise_mm);

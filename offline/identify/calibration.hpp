@@ -156,6 +156,7 @@ struct Calibration {
   std::vector<std::string> decisions;  ///< what was decided about the unknowns
   std::vector<std::string> notes;      ///< what the reader has to know
   std::vector<std::string> details;    ///< each weak or lost combination of parameters, of which a note names the worst
+  std::string contradiction;           ///< why the rotations were left out (rotation_check.hpp); empty: they were not
   std::vector<std::string> reasons;    ///< why the result must not be used; empty: it may
   std::string accepted;                ///< why it is used all the same (--accept)
   std::string verdict;                 ///< a few sentences
