@@ -12,6 +12,14 @@ install(TARGETS mdhcal_rt mdhcal_port EXPORT mdhcalTargets ARCHIVE DESTINATION "
 install(DIRECTORY "${PROJECT_SOURCE_DIR}/lib/include/" "${PROJECT_SOURCE_DIR}/port/include/"
         DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}" COMPONENT library FILES_MATCHING PATTERN "*.h" PATTERN "*.hpp")
 install(EXPORT mdhcalTargets NAMESPACE mdhcal:: DESTINATION "${package_folder}" COMPONENT library)
+# Apart: who loads its targets needs libsodium.
+if(TARGET mdhcal_port_sodium)
+  set_target_properties(mdhcal_port_sodium PROPERTIES EXPORT_NAME port_sodium)
+  install(TARGETS mdhcal_port_sodium EXPORT mdhcalSodiumTargets ARCHIVE DESTINATION "${CMAKE_INSTALL_LIBDIR}"
+          COMPONENT library)
+  install(EXPORT mdhcalSodiumTargets NAMESPACE mdhcal:: DESTINATION "${package_folder}" COMPONENT library)
+  install(FILES "${PROJECT_SOURCE_DIR}/cmake/Findsodium.cmake" DESTINATION "${package_folder}" COMPONENT library)
+endif()
 
 configure_package_config_file("${packaging}/mdhcalConfig.cmake.in" "${PROJECT_BINARY_DIR}/mdhcalConfig.cmake"
                               INSTALL_DESTINATION "${package_folder}")

@@ -33,6 +33,25 @@ Share<Precision> share_of(const BlobContent& model) {
   }
 }
 
+// Whether the compiler computes what is written: it may not regroup sums, divide by multiplying, fuse a product and a sum, or
+// take it that there are no NaN, infinities and negative zeros. Not every compiler says that it was told to (real.hpp).
+bool computes_as_written() {
+  volatile Real given[] = {Real{1}, Real{5}, Real{3}, static_cast<Real>(sizeof(Real) == sizeof(double) ? 0x1p-30 : 0x1p-15),
+                           -Real{0}, static_cast<Real>(__builtin_inf()), static_cast<Real>(__builtin_nan(""))};
+  const Real one = given[0];
+  const Real small = given[3];
+  const Real tiny = small * small * small;  // lost beside 1
+  const Real regrouped = (one + tiny) - one;
+  const Real fused = (one + small) * (one - small) - one;  // exactly -small^2, which rounds away only before the sum
+  const Real quotient = given[1] / Real{3};                // 5 (1 / 3) rounds otherwise, and 5 / 3 at compile time does not
+  volatile Real divided = given[1] / given[2];
+  const Real zero = given[4] + Real{0};
+  const Real infinite = given[5];
+  const Real undefined = given[6];
+  return within_bound(regrouped, Real{0}) && within_bound(fused, Real{0}) && within_bound(quotient - divided, Real{0}) &&
+         !__builtin_signbit(zero) && __builtin_isinf(infinite) && __builtin_isnan(undefined);
+}
+
 bool near(const Pose<Real>& a, const Pose<Real>& b, Real bound) {
   for (int k = 0; k < 3; ++k) {
     if (!within_bound(a.position_m[k] - b.position_m[k], bound)) return false;
@@ -80,6 +99,7 @@ Status run(const SelfTestVector<Real>& vector, const Arm<Real>& arm, const Share
 Status self_test(const BlobContent& model, const Arm<Real>& arm) noexcept {
   const Share<Real> share = share_of<Real>(model);
   if (share.count < 1 || share.count > static_cast<std::int32_t>(max_vectors)) return Status::self_test_failed;
+  if (!computes_as_written()) return Status::self_test_failed;
   const bool bits = model.arithmetic_id == arithmetic_id;
   for (std::int32_t i = 0; i < share.count; ++i) {
     if (run(share.vector[i], arm, share, bits) != Status::ok) return Status::self_test_failed;

@@ -11,6 +11,12 @@
 #error "compile with MDHCAL_REAL=double or MDHCAL_REAL=float"
 #endif
 
+// The flags that -ffast-math stands for, where the compiler tells; self_test() notices the others.
+#if defined(__FAST_MATH__) || (defined(__FINITE_MATH_ONLY__) && __FINITE_MATH_ONLY__ > 0) || defined(__ASSOCIATIVE_MATH__) || \
+    defined(__RECIPROCAL_MATH__) || defined(__NO_SIGNED_ZEROS__) || defined(__NO_TRAPPING_MATH__)
+#error "compile mdhcal without -ffast-math and the flags that it stands for: its bits rest on IEEE arithmetic"
+#endif
+
 // Excess precision would change the bits between machines.
 static_assert(FLT_EVAL_METHOD == 0, "float and double must be evaluated in their own precision");
 

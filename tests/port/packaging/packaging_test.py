@@ -4,6 +4,7 @@
 import json
 import os
 import pathlib
+import platform
 import re
 import struct
 import subprocess
@@ -14,7 +15,6 @@ import zlib
 
 HERE = pathlib.Path(__file__).resolve().parent
 ROOT = HERE.parents[2]
-PACKAGING = ROOT / "cmake/packaging"
 BOARD = ROOT / "port/cortex_m"
 BLOB = max((ROOT / "tests/blob/golden").glob("written-arithmetic-*.blob"), key=lambda path: int(path.name.split("-")[2]))
 
@@ -48,6 +48,8 @@ class Packaging(unittest.TestCase):
             cls.emulator, cls.prefix_ = [BOARD / "run.sh", machine], "arm-none-eabi-"
         else:
             cls.link = []
+            if platform.machine() == "x86_64" and " fma " in pathlib.Path("/proc/cpuinfo").read_text():
+                cls.flags = ["-mfma"]  # what would fuse, if it was let
 
     @classmethod
     def tearDownClass(cls):
@@ -88,11 +90,22 @@ class Packaging(unittest.TestCase):
     def test_find_package_in_c(self):
         self.execute(self.consumer("package_c", "C", f"-Dmdhcal_DIR={self.config()}"))
 
+    def test_find_package_in_parts(self):
+        found = [f"-Dmdhcal_DIR={self.config()}"]
+        self.execute(self.consumer("package_parts", "CXX", *found, "-DCONSUMER_COMPONENTS=COMPONENTS;rt;port"))
+        with self.assertRaisesRegex(AssertionError, "wheels"):
+            self.consumer("package_wheels", "CXX", *found, "-DCONSUMER_COMPONENTS=COMPONENTS;wheels")
+        if not PRESET:
+            self.execute(self.consumer("package_sodium", "CXX", *found, "-DCONSUMER_COMPONENTS=COMPONENTS;port_sodium"))
+
     def config(self):
         return next(self.prefix.rglob("mdhcalConfig.cmake")).parent
 
     def test_add_subdirectory(self):
         self.execute(self.consumer("subdirectory_cxx", "CXX", f"-DCONSUMER_SOURCE_TREE={ROOT}"))
+
+    def test_fetch_content_from_a_project_in_c(self):
+        self.execute(self.consumer("fetched_c", "C", f"-DCONSUMER_FETCH={ROOT}"))
 
     def test_nothing_installed_names_a_place(self):
         for path in [*self.prefix.rglob("*.cmake"), *self.prefix.rglob("*.pc")]:
@@ -108,27 +121,46 @@ class Packaging(unittest.TestCase):
                    *options, *self.link, "-o", program])
         self.execute(program)
 
-    def test_platformio_library_holds_the_same_functions(self):
-        current = subprocess.run([sys.executable, HERE / "check_sources.py"], capture_output=True, text=True)
-        # While lib is being changed the list may lag behind; what is submitted must have it.
-        if current.returncode != 0 and os.environ.get("CI") != "true":
-            print(f"left out: {current.stdout}")
-            return
-        self.assertEqual(current.returncode, 0, current.stdout)
-        library = PACKAGING / "platformio"
-        flags = json.loads((library / "library.json").read_text())["build"]["flags"]
-        objects = []
-        for source in sorted((library / "src").glob("*.cpp")):
-            objects.append(self.here / f"{source.stem}.o")
-            self.run_([self.prefix_ + "g++", *self.flags, *flags, "-c", source, "-o", objects[-1]], cwd=library)
+    def amalgamated(self):
+        """The folder of amalgamate.py, with its objects as a compiler makes them that is told nothing of IEEE arithmetic."""
+        folder = self.here / "amalgamated"
+        if not folder.exists():
+            self.run_([sys.executable, ROOT / "cmake/packaging/amalgamate.py", folder])
+            for source in folder.glob("src/*.cpp"):
+                self.run_([self.prefix_ + "g++", *self.flags, "-std=c++17", "-O2", "-fno-exceptions", "-fno-math-errno",
+                           "-ffunction-sections", "-ffp-contract=fast", f"-I{folder / 'include'}", "-c", source,
+                           "-o", source.with_suffix(".o")])
+        return folder, sorted(folder.glob("src/*.o"))
+
+    def test_amalgamation_holds_the_same_functions(self):
+        folder, objects = self.amalgamated()
         names = lambda files: {line.split()[2] for line in self.run_(
             [self.prefix_ + "nm", "-g", "--defined-only", *files]).splitlines() if len(line.split()) == 3}
-        archives = [BUILD / "lib/libmdhcal_rt.a"]
-        self.assertEqual(names(archives), names([item for item in objects if item.name.startswith("rt_")]))
-        program = self.here / "by_platformio"
-        self.run_([self.prefix_ + "g++", "-std=c++17", *self.flags, f"-I{ROOT / 'lib/include'}", f"-I{ROOT / 'port/include'}",
+        lib, port = names([BUILD / "lib/libmdhcal_rt.a"]), names([BUILD / "port/libmdhcal_port.a"])
+        self.assertLessEqual(lib, names(objects))
+        self.assertLessEqual(names(objects) - lib, port)
+        program = self.here / "by_amalgamation"
+        self.run_([self.prefix_ + "g++", "-std=c++17", *self.flags, f"-I{folder / 'include'}",
                    HERE / "consumer/consumer.cpp", *objects, *self.startup(), *self.link, "-o", program])
         self.execute(program)
+
+    def test_amalgamation_has_the_same_bits(self):
+        folder, objects = self.amalgamated()
+        program = self.here / "loop_by_amalgamation"
+        self.run_([self.prefix_ + "gcc", "-std=c99", *self.flags, f"-I{folder / 'include'}", ROOT / "lib/examples/servo_loop.c",
+                   *objects, *self.startup(), *self.link, "-o", program])
+        # load: ok says that every bit of the self-test is the host tool's.
+        done = self.run_([*self.emulator, program, BLOB], timeout=60)
+        self.assertRegex(done, r"^load: ok\n(tick \d+: ok, .*\n){4}$")
+
+    def test_platformio_and_esp_idf_take_the_amalgamation(self):
+        folder, _ = self.amalgamated()
+        library = (ROOT / "lib/CMakeLists.txt").read_text()
+        for flag in json.loads((folder / "library.json").read_text())["build"]["flags"]:
+            self.assertTrue(flag == "-std=c++17" or f"{flag} " in library or f"{flag})" in library or f"{flag}\n" in library, flag)
+        if not PRESET:
+            self.execute(self.build("esp_idf", HERE / "esp_idf_like", f"-DMODULE={folder}",
+                                    f"-DCONSUMER={HERE / 'consumer/consumer.cpp'}"))
 
     def zephyr(self, name, application):
         return self.build(name, application, f"-DZephyr_DIR={HERE / 'zephyr_like'}", f"-DEXTRA_ZEPHYR_MODULES={ROOT}",
@@ -158,10 +190,6 @@ class Packaging(unittest.TestCase):
         flash.write_bytes((slot(blob, 7) + slot(damaged, 8)).ljust(32768, b"\xff"))
         done = self.run_([program], env=environment, timeout=60)
         self.assertRegex(done, r"^[^\n]+: ok\n1000 ticks, joint 1 moved to 5\d{5} urad: ok\n$")
-
-    def test_esp_idf_component(self):
-        self.execute(self.build("esp_idf", HERE / "esp_idf_like", f"-DMODULE={PACKAGING / 'esp-idf/mdhcal'}",
-                                f"-DCONSUMER={HERE / 'consumer/consumer.cpp'}"))
 
 
 if __name__ == "__main__":

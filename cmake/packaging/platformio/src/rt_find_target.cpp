@@ -1,2 +1,0 @@
-// SPDX-License-Identifier: MIT
-#include "../../../../lib/src/blob/find_target.cpp"

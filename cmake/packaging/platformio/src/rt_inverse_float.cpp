@@ -1,3 +1,0 @@
-// SPDX-License-Identifier: MIT
-#define MDHCAL_REAL float
-#include "../../../../lib/src/inverse/inverse.cpp"
