@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""amalgamate.py FOLDER: the libraries in four files that stand alone, for build systems without CMake, in a folder that
+"""amalgamate.py FOLDER: the libraries in files that stand alone, for build systems without CMake, in a folder that
 PlatformIO takes as a library and ESP-IDF as a component:
-  include/mdhcal.h          the C header
+  include/mdhcal.h          the C header, and mdhcal_port.h for the blob store
   src/mdhcal.cpp            what both precisions share, and the blob store
   src/mdhcal_double.cpp     the kinematics in double
   src/mdhcal_float.cpp      and in float: leave out what is not used
@@ -48,7 +48,7 @@ def body(path, done, names):
     if path in done:
         return ""
     done.add(path)
-    text = re.sub(r"\A(//|/\*) SPDX[^\n]*\n", "", path.read_text()).replace("#pragma once\n", "")
+    text = re.sub(r"\A// SPDX[^\n]*\n", "", path.read_text()).replace("#pragma once\n", "")
     private = re.search(r"^namespace \{$(.*?)^\}  // namespace$", text, re.M | re.S) if path.suffix == ".cpp" else None
     for name in sorted({a or b for a, b in DECLARED.findall(private.group(1))} if private else ()):
         if names.setdefault(name, path) != path:
@@ -84,9 +84,10 @@ def main():
     folder = pathlib.Path(sys.argv[1])
     sources = lists()
     files = {"include/mdhcal.h": c_header(),
-             "src/mdhcal.cpp": unit([*sources["once"], ROOT / "port/src/store.cpp"])}
+             "src/mdhcal.cpp": unit([*sources["once"], *(ROOT / "port/src" / name for name in ("store.cpp", "store_c.cpp"))])}
     for real in ("double", "float"):
         files[f"src/mdhcal_{real}.cpp"] = unit(sources["per_precision"], f"#define MDHCAL_REAL {real}\n")
+    files["include/mdhcal_port.h"] = (ROOT / "port/include/mdhcal_port.h").read_text()
     for top in HEADERS:
         for path in sorted((top / "mdhcal").rglob("*.hpp")):
             files[f"include/{path.relative_to(top)}"] = path.read_text()

@@ -122,7 +122,8 @@ int32_t MDHCAL_C_NAME(joint_accelerations)(const MDHCAL_C_NAME(calibrated_arm)* 
                                            const MDHCAL_REAL_TYPE flange_acceleration[6],
                                            const MDHCAL_C_NAME(rate_limits)* limits, MDHCAL_REAL_TYPE* acceleration);
 
-/* find_solutions() and cold_start() on the corrected model. */
+/* find_solutions() and cold_start() on the corrected model; the goal of default_tick_options() will do. `restarts`, 0 ... 400:
+ * 0 for an arm with a closed form (description.family), else 100. */
 int32_t MDHCAL_C_NAME(find_solutions)(const MDHCAL_C_NAME(calibrated_arm)* arm, const MDHCAL_C_NAME(goal_options)* goal,
                                       int32_t restarts, const MDHCAL_C_NAME(pose)* base_T_flange,
                                       const MDHCAL_REAL_TYPE* posture, MDHCAL_C_NAME(solutions)* solutions);

@@ -61,6 +61,13 @@ class Status(enum.IntEnum):
     BLOB_COUNTER = 27
     SELF_TEST_FAILED = 28
     SELF_TEST_TOLERANCE = 29
+    FLASH_READ = 48
+    FLASH_PROGRAM = 49
+    FLASH_ERASE = 50
+    FLASH_VERIFY = 51
+    FLASH_GEOMETRY = 52
+    STORE_EMPTY = 53
+    STORE_UNREADABLE = 54
 
     @property
     def text(self) -> str:
@@ -325,6 +332,7 @@ class Compensator:
 
     def __init__(self, arm: CalibratedArm, model: Model = Model.CORRECTED) -> None:
         self.arm = arm
+        self._arms = [arm]  # all of them live as long as this: a ramp may refer to what it comes from
         self._storage = _storage(1)
         _check("compensator", _lib.mdhcal_start_at_rest(self._storage, ctypes.sizeof(self._storage), arm._storage,
                                                         Model(model)))
@@ -332,6 +340,7 @@ class Compensator:
     def start_ramp(self, arm: CalibratedArm, ticks: int, model: Model = Model.CORRECTED) -> None:
         """Goes to a model of the same robot in so many ticks. Raises Refused for another robot."""
         _check("ramp", _lib.mdhcal_start_ramp(self._storage, arm._storage, Model(model), ticks))
+        self._arms.append(arm)
         self.arm = arm
 
     def start_frame_ramp(self, base_T_user: npt.ArrayLike, flange_T_tool: npt.ArrayLike, ticks: int) -> None:
