@@ -7,7 +7,7 @@ static mdhcal_calibrated_arm arm;
 static mdhcal_compensator loop;
 
 int main(int count, char** arguments) {
-  static uint8_t bytes[4096];
+  static uint8_t bytes[8160];
   mdhcal_tick_options options;
   double nominal_q[MDHCAL_MAX_JOINTS] = {0.5, 0.4, 0.6, 0.5, 0.7, 0.5}, q[MDHCAL_MAX_JOINTS] = {0.5, 0.4, 0.6, 0.5, 0.7, 0.5};
   FILE* file = count == 2 ? fopen(arguments[1], "rb") : NULL;

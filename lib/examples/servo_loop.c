@@ -5,7 +5,7 @@
 
 #include "mdhcal.h"
 
-static uint8_t bytes[4096];
+static uint8_t bytes[8160];
 static mdhcal_calibrated_arm arm;
 static mdhcal_compensator loop;
 

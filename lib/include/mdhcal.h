@@ -3,8 +3,8 @@
  * The library for C99. Everything below exists twice: mdhcal_... in double, mdhcalf_... in float.
  * A calibrated arm is constant after mdhcal_load() and shared by any number of loops and threads; each loop has a
  * compensator of its own, whose functions belong to the loop's thread: none locks, none may run beside another on the same
- * compensator. A new calibration is loaded elsewhere and handed over to the loop's thread, which calls start_ramp(); that
- * copies what it needs. Both are opaque storage of a stated size that the caller owns; nothing is allocated.
+ * compensator. A new calibration is loaded elsewhere and handed over to the loop's thread, which calls start_ramp(); the
+ * arm before it may change or go once refers_to() is 0. Both are opaque storage of a stated size that the caller owns; nothing is allocated.
  * Units: metres, radians, quaternions w, x, y, z with w >= 0. Joints are readings of the controller [rad] or [m].
  */
 #ifndef MDHCAL_H
@@ -18,7 +18,7 @@ extern "C" {
 #endif
 
 /* Changes with every change of a size, a struct or a signature below. */
-#define MDHCAL_ABI_VERSION 2u
+#define MDHCAL_ABI_VERSION 3u
 
 #define MDHCAL_MAX_JOINTS 8
 #define MDHCAL_MAX_SOLUTIONS 16
@@ -87,6 +87,8 @@ typedef struct mdhcal_provenance {
   uint32_t pose_count, held_out_count;
   int32_t has_measurements, has_lambda, has_held_out;
   double lambda, mean_before_m, max_before_m, mean_after_m, max_after_m;
+  int32_t has_region;
+  double region_min_m[3], region_max_m[3], lean_min_m, lean_max_m;
 } mdhcal_provenance;
 typedef struct mdhcal_tolerances {
   double position_m, rotation_rad;
@@ -100,6 +102,7 @@ typedef struct mdhcal_description {
   int32_t family;
   uint32_t security_counter;
   mdhcal_tolerances tolerances;
+  double max_velocity[MDHCAL_MAX_JOINTS];
   mdhcal_provenance provenance;
 } mdhcal_description;
 
@@ -118,8 +121,8 @@ int32_t mdhcal_usable(int32_t status);
 int32_t mdhcal_check_environment(void);
 
 #define MDHCAL_REAL_TYPE double
-#define MDHCAL_ARM_BYTES 3584
-#define MDHCAL_COMPENSATOR_BYTES 5632
+#define MDHCAL_ARM_BYTES 26624
+#define MDHCAL_COMPENSATOR_BYTES 10240
 #define MDHCAL_C_NAME(name) mdhcal_##name
 #include "mdhcal/c_functions.h"
 #undef MDHCAL_REAL_TYPE
@@ -128,8 +131,8 @@ int32_t mdhcal_check_environment(void);
 #undef MDHCAL_C_NAME
 
 #define MDHCAL_REAL_TYPE float
-#define MDHCAL_ARM_BYTES 2304
-#define MDHCAL_COMPENSATOR_BYTES 3072
+#define MDHCAL_ARM_BYTES 24064
+#define MDHCAL_COMPENSATOR_BYTES 5376
 #define MDHCAL_C_NAME(name) mdhcalf_##name
 #include "mdhcal/c_functions.h"
 #undef MDHCAL_REAL_TYPE

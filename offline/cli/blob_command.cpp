@@ -6,6 +6,7 @@
 #include "offline/base/error.hpp"
 #include "offline/cli/messages.hpp"
 #include "offline/output/blob_file.hpp"
+#include "offline/robot/arm_with_terms.hpp"
 #include "offline/robot/rotation.hpp"
 
 namespace mdhcal::offline {
@@ -53,10 +54,13 @@ void warn_of_acceptance(const BlobFile& file) {
 }
 
 BlobArm read_blob_arm(const std::string& path, const PoseOptions& options) {
-  BlobArm blob{read_blob(path), {}, identity, identity};
-  if (make_arm(blob.model.geometry, blob.arm) != Status::ok) {
-    throw InputError(path, 0, 0, "The geometry in the blob is outside the library's valid range.");
+  BlobArm blob{read_blob(path), {}, nullptr, identity, identity};
+  ArmWithTerms<double> prepared;
+  if (prepare(blob.model.geometry, blob.model.transmission, prepared) != Status::ok) {
+    throw InputError(path, 0, 0, "The couplings in the blob cannot be inverted, as its joint functions need it.");
   }
+  blob.arm = prepared.arm;
+  blob.terms = prepared.table;
   if (options.frame == "tracker") {
     if (blob.model.has_base == 0) {
       throw InputError(path, 0, 0, "The blob has no base frame (tracker_T_base); expected one for --frame tracker.");

@@ -2,6 +2,7 @@
 // What the commands on a blob have in common: the arm, and the frame and point in which poses are given.
 #pragma once
 
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -29,7 +30,8 @@ void warn_of_acceptance(const BlobFile& file);
 /// A blob ready for use: its arm and the transforms that --frame and --target ask for.
 struct BlobArm {
   mdhcal::BlobContent model;
-  Arm<double> arm;
+  Arm<double> arm;               ///< with the transmission's terms; refers to `terms`
+  std::shared_ptr<const JointFunctionTable> terms;
   Frame<double> world_T_base;    ///< world: the frame that --frame names
   Frame<double> flange_T_target; ///< a translation
 

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "mdhcal/self_test.hpp"
+#include "offline/robot/arm_with_terms.hpp"
 
 namespace mdhcal::offline {
 
@@ -67,11 +68,59 @@ Json joints_json(const BlobContent& model) {
                      {turns ? "min_deg" : "min_mm", joint.has_min == 1 ? Json(joint.min * unit) : Json()},
                      {turns ? "max_deg" : "max_mm", joint.has_max == 1 ? Json(joint.max * unit) : Json()},
                      {"coupling", coupling},
+                     {turns ? "max_velocity_deg_s" : "max_velocity_mm_s",
+                      model.max_velocity[i] > 0 ? Json(model.max_velocity[i] * unit) : Json()},
                      {"nominal", link_json(model.nominal[i])},
                      {"corrected", link_json(model.geometry.link[i])},
                      {"deviation", link_json(minus(model.geometry.link[i], model.nominal[i]))}});
   }
   return links;
+}
+
+// Readings in radians or metres, coefficients in microradians.
+Json transmission_json(const BlobContent& model) {
+  const Gravity& gravity = model.transmission.gravity;
+  const auto joints = static_cast<std::size_t>(model.geometry.joint_count);
+  Json out{{"functions", Json::array()}, {"gravity", nullptr}};
+  for (std::size_t i = 0; i < joints; ++i) {
+    const JointFunction& f = model.transmission.function[i];
+    const bool stated = f.seen_min_rad < f.seen_max_rad;
+    const bool turns = model.geometry.joint[i].kind == JointKind::revolute;
+    const double unit = turns ? deg_per_rad : mm_per_m;
+    Json orders = Json::array();
+    for (std::size_t k = 0; k < static_cast<std::size_t>(f.order_count); ++k) {
+      orders.push_back({{"order", k + 1},
+                        {"cosine_urad", static_cast<double>(f.cosine_rad[k]) * 1e6},
+                        {"sine_urad", static_cast<double>(f.sine_rad[k]) * 1e6}});
+    }
+    out["functions"].push_back({{turns ? "seen_min_deg" : "seen_min_mm", stated ? Json(f.seen_min_rad * unit) : Json()},
+                                {turns ? "seen_max_deg" : "seen_max_mm", stated ? Json(f.seen_max_rad * unit) : Json()},
+                                {"orders", orders}});
+  }
+  bool sags = false;
+  Json compliance = Json::array();
+  for (std::size_t i = 0; i < joints; ++i) {
+    Json row = Json::array();
+    for (std::size_t j = 0; j < joints; ++j) {
+      row.push_back(gravity.compliance[i][j] * 1e6);
+      sags = sags || gravity.compliance[i][j] < 0 || gravity.compliance[i][j] > 0;
+    }
+    compliance.push_back(row);
+  }
+  Json payload = Json::array();
+  bool carries = false;
+  for (std::size_t i = 0; i < joints; ++i) {
+    payload.push_back(gravity.payload_compliance[i] * 1e6);
+    carries = carries || gravity.payload_compliance[i] < 0 || gravity.payload_compliance[i] > 0;
+  }
+  if (sags || carries) {
+    out["gravity"] = {{"direction", gravity.direction},
+                      {"compliance_urad_per_m", compliance},
+                      {"payload_kg", gravity.payload_kg},
+                      {"payload_com_mm", point_json(gravity.payload_com_m)},
+                      {"payload_compliance_urad_per_kg_m", carries ? payload : Json()}};
+  }
+  return out;
 }
 
 Json provenance_json(const BlobProvenance& from) {
@@ -86,6 +135,12 @@ Json provenance_json(const BlobProvenance& from) {
   out["measurements_sha256"] = nullptr;
   out["pose_count"] = nullptr;
   out["held_out"] = nullptr;
+  out["region"] = nullptr;
+  if (from.has_region == 1) {
+    out["region"] = {{"min_mm", point_json(from.region_min_m)},
+                     {"max_mm", point_json(from.region_max_m)},
+                     {"lean_mm", {from.lean_min_m * mm_per_m, from.lean_max_m * mm_per_m}}};
+  }
   if (from.has_measurements == 1) {
     out["measurements_sha256"] = hexadecimal(from.measurements_sha256, sizeof from.measurements_sha256);
     out["pose_count"] = from.pose_count;
@@ -125,9 +180,9 @@ std::uint32_t number(const Blob& bytes, std::size_t offset, std::size_t size) {
 
 template <class Real>
 const char* outcome(const BlobContent& model) {
-  Arm<Real> arm{};
-  if (make_arm(model.geometry, arm) != Status::ok) return "not run";
-  switch (self_test(model, arm)) {
+  ArmWithTerms<Real> prepared;
+  if (prepare(model.geometry, model.transmission, prepared) != Status::ok) return "not run";
+  switch (self_test(model, prepared.arm)) {
     case Status::ok: return "same bits";
     case Status::self_test_tolerance: return "within tolerance";
     default: return "failed";
@@ -152,6 +207,7 @@ Json describe_json(const BlobFile& file) {
           {"name", model.name},
           {"serial", optional_text(model.serial)},
           {"links", joints_json(model)},
+          {"transmission", transmission_json(model)},
           {"last_T_flange", pose_json(model.geometry.last_T_flange)},
           {"tracker_T_base", model.has_base == 1 ? pose_json(model.tracker_T_base) : Json()},
           {"targets", targets},

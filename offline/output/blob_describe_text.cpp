@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "offline/base/text_table.hpp"
@@ -75,6 +76,45 @@ std::string links_text(const Json& blob) {
   return text;
 }
 
+// A row a joint: where readings were seen, the strongest order, what all orders come to; then gravity.
+std::string transmission_text(const Json& blob) {
+  Rows rows{{"link", "seen", "orders", "strongest", "amplitude"}};
+  std::size_t number = 1;
+  bool any = false;
+  for (const Json& f : blob["transmission"]["functions"]) {
+    const bool turns = f.contains("seen_min_deg");
+    const Json& low = f[turns ? "seen_min_deg" : "seen_min_mm"];
+    const Json& high = f[turns ? "seen_max_deg" : "seen_max_mm"];
+    double most = 0;
+    std::size_t strongest = 0;
+    for (const Json& order : f["orders"]) {
+      const double size = std::hypot(order["cosine_urad"].get<double>(), order["sine_urad"].get<double>());
+      if (size > most) {
+        most = size;
+        strongest = order["order"].get<std::size_t>();
+      }
+    }
+    any = any || !low.is_null();
+    rows.push_back({std::to_string(number++),
+                    low.is_null() ? "-" : fixed(low.get<double>(), 1) + " to " + fixed(high.get<double>(), 1) + (turns ? " deg" : " mm"),
+                    f["orders"].empty() ? "-" : "1 to " + std::to_string(f["orders"].size()),
+                    strongest == 0 ? "-" : std::to_string(strongest), strongest == 0 ? "-" : fixed(most, 1) + " urad"});
+  }
+  std::string text = any ? "\njoint functions, and the readings that the calibration saw\n" + text_table(rows) : std::string();
+  const Json& gravity = blob["transmission"]["gravity"];
+  if (gravity.is_null()) return text;
+  Rows sag{{"sag", "of the weight at the end of each link, urad/m"}};
+  number = 1;
+  for (const Json& row : gravity["compliance_urad_per_m"]) sag.push_back({"link " + std::to_string(number++), numbers(row, 2)});
+  text += "\ngravity falls along " + numbers(gravity["direction"], 4) + "; the calibration holds for a payload of " +
+          fixed(gravity["payload_kg"].get<double>(), 3) + " kg" +
+          (gravity["payload_compliance_urad_per_kg_m"].is_null() ? ", and tells nothing of another\n" : "\n") + text_table(sag);
+  if (!gravity["payload_compliance_urad_per_kg_m"].is_null()) {
+    text += "of another payload, urad/(kg m): " + numbers(gravity["payload_compliance_urad_per_kg_m"], 2) + '\n';
+  }
+  return text;
+}
+
 std::string origin_text(const Json& blob) {
   const Json& from = blob["provenance"];
   std::string text = "written by      " + from["tool_version"].get<std::string>() + ", " + word(from["date"], "no date") + '\n';
@@ -90,6 +130,11 @@ std::string origin_text(const Json& blob) {
   } else {
     text += "measurements    " + std::to_string(from["pose_count"].get<unsigned>()) + " poses, SHA-256 " +
             from["measurements_sha256"].get<std::string>() + '\n';
+  }
+  if (!from["region"].is_null()) {
+    const Json& region = from["region"];
+    text += "measured        flange from " + numbers(region["min_mm"], 0) + " to " + numbers(region["max_mm"], 0) + " mm, leaning out " +
+            numbers(region["lean_mm"], 0) + " mm\n";
   }
   if (from["held_out"].is_null()) return text + "judged on       nothing\n";
   const Json& held_out = from["held_out"];
@@ -148,7 +193,7 @@ std::string describe_text(const Json& blob) {
   for (const Json& target : blob["targets"]) {
     text += "target          \"" + target["name"].get<std::string>() + "\": " + numbers(target["xyz_mm"], length_decimals) + " mm\n";
   }
-  return text + '\n' + joints_text(blob) + links_text(blob) + '\n' + vectors_text(blob);
+  return text + '\n' + joints_text(blob) + links_text(blob) + transmission_text(blob) + '\n' + vectors_text(blob);
 }
 
 }  // namespace mdhcal::offline

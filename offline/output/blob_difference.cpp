@@ -11,6 +11,7 @@
 #include "offline/base/error.hpp"
 #include "offline/base/text_table.hpp"
 #include "offline/output/blob_describe.hpp"
+#include "offline/robot/arm_with_terms.hpp"
 #include "offline/robot/units.hpp"
 
 namespace mdhcal::offline {
@@ -64,6 +65,38 @@ void joint(Changes& changes, const std::string& number, const Joint& a, const Jo
   }
 }
 
+// Coefficients in microradians, compliances in microradians a metre.
+void transmission(Changes& changes, const BlobContent& a, const BlobContent& b) {
+  constexpr double micro = 1e6;
+  for (std::size_t i = 0; i < max_joints; ++i) {
+    const JointFunction& from = a.transmission.function[i];
+    const JointFunction& to = b.transmission.function[i];
+    const std::string number = std::to_string(i + 1);
+    changes.number("seen_min" + number, from.seen_min_rad, to.seen_min_rad, 1.0);
+    changes.number("seen_max" + number, from.seen_max_rad, to.seen_max_rad, 1.0);
+    for (std::size_t k = 0; k < max_orders; ++k) {
+      const std::string order = number + "_order" + std::to_string(k + 1) + "_urad";
+      changes.number("cosine" + order, static_cast<double>(from.cosine_rad[k]), static_cast<double>(to.cosine_rad[k]), micro);
+      changes.number("sine" + order, static_cast<double>(from.sine_rad[k]), static_cast<double>(to.sine_rad[k]), micro);
+    }
+    for (std::size_t j = i; j < max_joints; ++j) {
+      changes.number("compliance" + number + '_' + std::to_string(j + 1) + "_urad_m", a.transmission.gravity.compliance[i][j],
+                     b.transmission.gravity.compliance[i][j], micro);
+    }
+    changes.number("payload_compliance" + number + "_urad_kg_m", a.transmission.gravity.payload_compliance[i],
+                   b.transmission.gravity.payload_compliance[i], micro);
+    changes.number("max_velocity" + number, a.max_velocity[i], b.max_velocity[i], 1.0);
+  }
+  const Gravity& from = a.transmission.gravity;
+  const Gravity& to = b.transmission.gravity;
+  const char* axes[3] = {"_x", "_y", "_z"};
+  for (std::size_t k = 0; k < 3; ++k) {
+    changes.number(std::string("gravity") + axes[k], from.direction[k], to.direction[k], 1.0);
+    changes.number(std::string("payload_com") + axes[k] + "_mm", from.payload_com_m[k], to.payload_com_m[k], mm_per_m);
+  }
+  changes.number("payload_kg", from.payload_kg, to.payload_kg, 1.0);
+}
+
 void targets(Changes& changes, const BlobContent& a, const BlobContent& b) {
   const auto find = [](const BlobContent& model, const std::string& name) -> const Target* {
     const Target* end = model.target + model.target_count;
@@ -91,9 +124,13 @@ void targets(Changes& changes, const BlobContent& a, const BlobContent& b) {
 
 // How far the flange moves from a to b at joint vectors within a's limits, half a turn and 0.5 m where it states none.
 Json movement(const BlobContent& a, const BlobContent& b) {
-  Arm<double> arm_a{};
-  Arm<double> arm_b{};
-  if (make_arm(a.geometry, arm_a) != Status::ok || make_arm(b.geometry, arm_b) != Status::ok) return nullptr;
+  ArmWithTerms<double> with_a;
+  ArmWithTerms<double> with_b;
+  if (prepare(a.geometry, a.transmission, with_a) != Status::ok || prepare(b.geometry, b.transmission, with_b) != Status::ok) {
+    return nullptr;
+  }
+  const Arm<double>& arm_a = with_a.arm;
+  const Arm<double>& arm_b = with_b.arm;
   std::mt19937_64 random(1);
   std::vector<double> position_mm;
   std::vector<double> rotation_deg;
@@ -165,6 +202,7 @@ Json difference_json(const BlobContent& a, const BlobContent& b) {
   pose(changes, "flange", a.geometry.last_T_flange, b.geometry.last_T_flange);
   changes.value("base", a.has_base == 1 ? "stated" : "not stated", b.has_base == 1 ? "stated" : "not stated");
   if (a.has_base == 1 && b.has_base == 1) pose(changes, "base", a.tracker_T_base, b.tracker_T_base);
+  transmission(changes, a, b);
   targets(changes, a, b);
   return {{"changes", changes.list()}, {"flange_movement", movement(a, b)}};
 }

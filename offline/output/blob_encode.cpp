@@ -66,7 +66,26 @@ void write_joints(Writer& writer, const BlobContent& model) {
     writer.link(record + at::joint::nominal, model.nominal[i]);
     writer.link(record + at::joint::corrected, model.geometry.link[i]);
     writer.reals(record + at::joint::coupling, joint.coupling, max_joints);
+    writer.real(record + at::joint::max_velocity, model.max_velocity[i]);
   }
+}
+
+void write_transmission(Writer& writer, const Transmission& transmission) {
+  for (std::size_t i = 0; i < max_joints; ++i) {
+    const std::size_t record = at::functions + i * at::function_size;
+    const JointFunction& f = transmission.function[i];
+    writer.i32(record + at::function::order_count, f.order_count);
+    writer.real(record + at::function::seen_min, f.seen_min_rad);
+    writer.real(record + at::function::seen_max, f.seen_max_rad);
+    writer.reals(record + at::function::cosine, f.cosine_rad, max_orders);
+    writer.reals(record + at::function::sine, f.sine_rad, max_orders);
+    writer.reals(at::compliance + 8 * max_joints * i, transmission.gravity.compliance[i], max_joints);
+  }
+  const Gravity& gravity = transmission.gravity;
+  writer.reals(at::gravity, gravity.direction, 3);
+  writer.real(at::payload, gravity.payload_kg);
+  writer.reals(at::payload_com, gravity.payload_com_m, 3);
+  writer.reals(at::payload_compliance, gravity.payload_compliance, max_joints);
 }
 
 void write_provenance(Writer& writer, const BlobProvenance& provenance) {
@@ -81,6 +100,10 @@ void write_provenance(Writer& writer, const BlobProvenance& provenance) {
   const double held_out[4] = {provenance.mean_before_m, provenance.max_before_m, provenance.mean_after_m,
                               provenance.max_after_m};
   writer.reals(at::held_out, held_out, 4);
+  writer.reals(at::region, provenance.region_min_m, 3);
+  writer.reals(at::region + 24, provenance.region_max_m, 3);
+  const double lean[2] = {provenance.lean_min_m, provenance.lean_max_m};
+  writer.reals(at::region + 48, lean, 2);
 }
 
 }  // namespace
@@ -97,7 +120,8 @@ Blob encode(const BlobContent& model) {
   writer.u32(at::flags, (model.has_base != 0 ? at::flag_base : 0U) |
                             (provenance.has_measurements != 0 ? at::flag_calibrated : 0U) |
                             (provenance.has_lambda != 0 ? at::flag_lambda : 0U) |
-                            (provenance.has_held_out != 0 ? at::flag_held_out : 0U));
+                            (provenance.has_held_out != 0 ? at::flag_held_out : 0U) |
+                            (provenance.has_region != 0 ? at::flag_region : 0U));
   writer.i32(at::joint_count, model.geometry.joint_count);
   writer.i32(at::target_count, model.target_count);
   writer.i32(at::family, static_cast<std::int32_t>(model.family));
@@ -108,6 +132,7 @@ Blob encode(const BlobContent& model) {
   writer.bytes(at::name, model.name, at::name_size);
   writer.bytes(at::serial, model.serial, at::serial_size);
   write_joints(writer, model);
+  write_transmission(writer, model.transmission);
   writer.pose(at::last_T_flange, model.geometry.last_T_flange);
   if (model.has_base != 0) writer.pose(at::tracker_T_base, model.tracker_T_base);
   for (std::size_t i = 0; i < static_cast<std::size_t>(model.target_count); ++i) {

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <memory>
 #include <random>
 #include <vector>
 
@@ -75,9 +76,18 @@ double run(const Arm<Real>& arm, const Joints& readings, Real position_tolerance
 void fill_self_test_vectors(BlobContent& model) {
   Arm<double> arm{};
   Arm<float> arm_float{};
-  if (make_arm(model.geometry, arm) != Status::ok || make_arm(model.geometry, arm_float) != Status::ok) {
-    throw Refusal("The corrected geometry is not valid: a value is out of range.");
+  const auto table = std::make_unique<JointFunctionTable>();
+  const Status status = make_arm(model.geometry, model.transmission, *table, arm);
+  if (status == Status::blob_deviation) {
+    throw Refusal("A joint function or the sag is over what a controller accepts: the amplitudes of a joint's orders sum up to more than " +
+                  std::to_string(default_max_joint_function_rad * 1e3) + " mrad or their slopes to more than " +
+                  std::to_string(default_max_joint_function_slope) + ", or a joint may sag by more than " +
+                  std::to_string(max_sag_rad() * 1e3) + " mrad.");
   }
+  if (status != Status::ok || make_arm(model.geometry, model.transmission, *table, arm_float) != Status::ok) {
+    throw Refusal("The corrected geometry or its transmission is not valid: a value is out of range.");
+  }
+  make_table(model.transmission, *table);
   std::mt19937_64 random(20261121);
   std::vector<Candidate> candidates(candidate_count);
   for (Candidate& candidate : candidates) {

@@ -13,7 +13,7 @@
 extern "C" {
 #endif
 
-#define MDHCAL_BLOB_BYTES 4096
+#define MDHCAL_BLOB_BYTES 8160
 
 /* What a driver states of its region: struct FlashGeometry (mdhcal/port/flash.hpp). */
 typedef struct mdhcal_flash_geometry {

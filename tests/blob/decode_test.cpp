@@ -56,7 +56,9 @@ TEST(Decode, NoByteIsIgnored) {
 
 TEST(Decode, RefusesOtherVersions) {
   Bytes bytes = copy_of(golden::every_field);
-  put(bytes, at::major, 2, 2);
+  put(bytes, at::major, 1, 2);
+  EXPECT_EQ(decode_repaired(bytes), Status::blob_version);
+  put(bytes, at::major, 3, 2);
   EXPECT_EQ(decode_repaired(bytes), Status::blob_version);
   put(bytes, at::major, 0, 2);
   EXPECT_EQ(decode_repaired(bytes), Status::blob_version);
@@ -67,7 +69,9 @@ constexpr std::size_t ancillary[] = {at::header_reserved, at::header_reserved + 
                                      at::algorithm_reserved + 3, at::key_reserved, at::end_reserved,
                                      at::end_reserved + 27};
 constexpr std::size_t critical[] = {at::model_room, at::model_room + at::model_room_size - 1,
-                                    at::joints + at::joint::reserved, at::joints + at::joint::reserved_end + 15,
+                                    at::joints + at::joint::reserved, at::joints + at::joint::reserved_end + 7,
+                                    at::functions + at::function::reserved, at::functions + at::function::reserved_middle + 7,
+                                    at::gravity_reserved, at::gravity_reserved + 7,
                                     at::last_T_flange + at::pose_reserved, at::tracker_T_base + at::pose_reserved + 7};
 
 TEST(Decode, ReservedBytesFollowTheVersionRules) {
@@ -85,9 +89,9 @@ TEST(Decode, ReservedBytesFollowTheVersionRules) {
       EXPECT_EQ(decode_repaired(bytes), Status::blob_reserved) << offset;
       bytes[offset] = 0;
     }
-    put(bytes, at::flags, 0x1F, 4);
+    put(bytes, at::flags, 0x3F, 4);
     EXPECT_EQ(decode_repaired(bytes), minor == 0 ? Status::blob_reserved : Status::ok);
-    put(bytes, at::flags, 0x1000F, 4);
+    put(bytes, at::flags, 0x1001F, 4);
     EXPECT_EQ(decode_repaired(bytes), Status::blob_reserved);
   }
 }
@@ -95,11 +99,11 @@ TEST(Decode, ReservedBytesFollowTheVersionRules) {
 TEST(Decode, WhatIsAbsentIsZero) {
   const std::uint64_t joint0 = at::joints;
   Bytes bytes = copy_of(golden::every_field);
-  for (const std::uint64_t flag : {at::flag_base, at::flag_calibrated, at::flag_lambda, at::flag_held_out}) {
-    put(bytes, at::flags, 0x0F & ~flag, 4);
+  for (const std::uint64_t flag : {at::flag_base, at::flag_calibrated, at::flag_lambda, at::flag_held_out, at::flag_region}) {
+    put(bytes, at::flags, 0x1F & ~flag, 4);
     EXPECT_EQ(decode_repaired(bytes), Status::blob_reserved) << flag;
   }
-  put(bytes, at::flags, 0x0F, 4);
+  put(bytes, at::flags, 0x1F, 4);
   for (const std::size_t count : {at::joint_count, at::target_count, at::double_vector_count, at::float_vector_count}) {
     const std::uint8_t whole = bytes[count];
     bytes[count] = static_cast<std::uint8_t>(whole - 1);
@@ -117,6 +121,25 @@ TEST(Decode, WhatIsAbsentIsZero) {
   EXPECT_EQ(decode_repaired(bytes), Status::blob_reserved);
 }
 
+// Amplitudes add up to 5 mrad at most, and times their orders to 0.1.
+TEST(Decode, BoundsTheJointFunctions) {
+  Bytes bytes = copy_of(golden::every_field);
+  const std::size_t f = at::functions + at::function::cosine;
+  put(bytes, f, 0.0039F);
+  EXPECT_EQ(decode_repaired(bytes), Status::ok);
+  put(bytes, f, 0.0051F);
+  EXPECT_EQ(decode_repaired(bytes), Status::blob_deviation);
+  bytes = copy_of(golden::every_field);
+  put(bytes, f + 4 * 39, 0.0020F);
+  EXPECT_EQ(decode_repaired(bytes), Status::ok);
+  put(bytes, f + 4 * 39, 0.0025F);
+  EXPECT_EQ(decode_repaired(bytes), Status::blob_deviation);
+  put(bytes, at::functions, std::uint64_t{41}, 4);
+  EXPECT_EQ(decode_repaired(bytes), Status::blob_value);
+  put(bytes, at::functions, std::uint64_t{39}, 4);
+  EXPECT_EQ(decode_repaired(bytes), Status::blob_value) << "an order beyond the count";
+}
+
 struct Case {
   std::size_t offset;
   double value;
@@ -125,6 +148,7 @@ struct Case {
 
 TEST(Decode, RefusesValuesOutOfRange) {
   constexpr std::size_t j = at::joints;
+  constexpr std::size_t f = at::functions;
   constexpr double tiny = std::numeric_limits<double>::denorm_min();
   const Case cases[] = {
       {j + at::joint::min, 2.6, Status::blob_value},                 // above max
@@ -149,6 +173,21 @@ TEST(Decode, RefusesValuesOutOfRange) {
       {at::lambda, 1e31, Status::blob_value},
       {at::held_out, -1e-9, Status::blob_value},
       {at::held_out + 24, 1001.0, Status::blob_value},
+      {j + at::joint::max_velocity, -0.5, Status::blob_value},
+      {j + at::joint::max_velocity, 1000.5, Status::blob_value},
+      {f + at::function::seen_min, 1.8, Status::blob_value},         // above seen_max
+      {f + at::function::seen_max, 1000.5, Status::blob_value},
+      {f + at::function::seen_max, -1.45, Status::blob_value},       // not a sector long
+      {at::gravity, 0.7, Status::blob_value},                        // not of length 1
+      {at::payload, -0.5, Status::blob_value},
+      {at::payload, 10001.0, Status::blob_value},
+      {at::payload_com, 1000.5, Status::blob_value},
+      {at::payload_compliance + 16, 1e-9, Status::blob_value},       // of a joint that slides
+      {at::compliance + 8 * 8, 1e-9, Status::blob_value},            // of joint 2 for link 1
+      {at::compliance, 0.1, Status::blob_deviation},
+      {at::region, 1.75, Status::blob_value},                        // above its maximum
+      {at::region + 48, -0.1, Status::blob_value},
+      {at::region + 56, 1000.5, Status::blob_value},
       {at::double_vectors, 1000.5, Status::blob_value},
       {at::double_vectors + 64, 0.5, Status::blob_value},
       {at::double_vectors + 96, 2e7, Status::blob_value},
@@ -198,7 +237,8 @@ TEST(Decode, RefusesWhatIsNotFinite) {
     const std::size_t joint = at::joints + i * at::joint_size;
     if (i % 4 < 2) doubles(joint + at::joint::min, 1);
     if (i % 2 == 0) doubles(joint + at::joint::max, 1);
-    doubles(joint + at::joint::nominal, 18);
+    doubles(joint + at::joint::nominal, 19);
+    doubles(at::functions + i * at::function_size + at::function::seen_min, 2);
     doubles(at::targets + i * at::target_size + at::target_point, 3);
   }
   doubles(at::last_T_flange, 7);
@@ -206,6 +246,16 @@ TEST(Decode, RefusesWhatIsNotFinite) {
   doubles(at::tolerances, 2);
   doubles(at::lambda, 1);
   doubles(at::held_out, 4);
+  doubles(at::gravity, 7);
+  doubles(at::payload_compliance, 8);
+  doubles(at::compliance, 64);
+  doubles(at::region, 8);
+  for (std::size_t k = 0; k < 40; ++k) {
+    for (const float value : {F::quiet_NaN(), -F::infinity(), F::infinity(), 1.5F}) {
+      refuse(at::functions + at::function::cosine + 4 * k, value);
+      refuse(at::functions + at::function::sine + 4 * k, value);
+    }
+  }
   for (std::size_t i = 0; i < 4; ++i) {
     doubles(at::double_vectors + i * at::double_vector_size, 23);
     for (std::size_t k = 0; k < 23; ++k) {
@@ -283,7 +333,7 @@ struct Call {
 bool fake_verify(const std::uint8_t* message, std::size_t size, const std::uint8_t* signature, void* context) {
   auto* call = static_cast<Call*>(context);
   ++call->calls;
-  return message == call->blob && size == 3968 && signature == call->blob + 4000 && call->answer;
+  return message == call->blob && size == 8032 && signature == call->blob + 8064 && call->answer;
 }
 
 TEST(Decode, AsksTheVerifier) {

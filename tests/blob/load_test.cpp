@@ -39,13 +39,16 @@ TYPED_TEST(Load, GivesTheArmsAndTheDescriptionOfTheBlob) {
   Geometry nominal = content.geometry;
   for (std::size_t i = 0; i < max_joints; ++i) nominal.link[i] = content.nominal[i];
   const Real q[max_joints] = {Real(0.25F), Real(-0.5F), Real(0.75F), Real(0.5F), Real(-0.25F), Real(1)};
-  const struct { const Geometry& geometry; const Arm<Real>& arm; } both[] = {{nominal, this->arm_->nominal},
-                                                                             {content.geometry, this->arm_->corrected}};
+  const auto table = std::make_unique<JointFunctionTable>();
+  make_table(content.transmission, *table);
+  Arm<Real> nominal_arm, corrected_arm;
+  ASSERT_EQ(make_arm(nominal, nominal_arm), Status::ok);
+  ASSERT_EQ(make_arm(content.geometry, content.transmission, *table, corrected_arm), Status::ok);
+  const struct { const Arm<Real>& made; const Arm<Real>& arm; } both[] = {{nominal_arm, this->arm_->nominal},
+                                                                          {corrected_arm, this->arm_->corrected}};
   for (const auto& one : both) {
-    Arm<Real> arm;
-    ASSERT_EQ(make_arm(one.geometry, arm), Status::ok);
     Pose<Real> asked, got;
-    ASSERT_EQ(forward(arm, q, asked), Status::ok);
+    ASSERT_EQ(forward(one.made, q, asked), Status::ok);
     ASSERT_EQ(forward(one.arm, q, got), Status::ok);
     for (int k = 0; k < 4; ++k) EXPECT_EQ(asked.quaternion[k], got.quaternion[k]);
     for (int k = 0; k < 3; ++k) EXPECT_EQ(asked.position_m[k], got.position_m[k]);

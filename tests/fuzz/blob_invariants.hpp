@@ -9,7 +9,7 @@
 namespace mdhcal::fuzz {
 
 /// The first invariant of docs/security.md that an accepted blob breaks, by its name there, or null. `bytes` are the
-/// blob's 4096 bytes, `model` what decode() made of them. `thorough` also runs the self-test, which takes longer.
+/// blob's 8160 bytes, `model` what decode() made of them. `thorough` also runs the self-test, which takes longer.
 const char* broken_invariant(const std::uint8_t* bytes, const BlobContent& model, bool thorough);
 
 }  // namespace mdhcal::fuzz

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // mutate_blobs COUNT SEED FILE...: decodes COUNT mutations of the blobs in the files, their CRC repaired, and checks the
-// invariants of docs/security.md on every accepted one. The bytes lie in a page of their own between two that may not be
-// touched, so that a read outside them ends the program. A failure prints the seed and the number that replay it.
+// invariants of docs/security.md on every accepted one. The bytes end where a page begins that may not be touched, so
+// that a read behind them ends the program. A failure prints the seed and the number that replay it.
 #include <sys/mman.h>
 #include <unistd.h>
 
@@ -123,11 +123,12 @@ class CrcUpdate {
 
 std::uint8_t* guarded_page() {
   const auto page = static_cast<std::size_t>(sysconf(_SC_PAGESIZE));
-  void* three = mmap(nullptr, 3 * page, PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
-  if (page < blob_size || three == MAP_FAILED) std::abort();
-  auto* middle = static_cast<std::uint8_t*>(three) + page;
-  if (mprotect(middle, page, PROT_READ | PROT_WRITE) != 0) std::abort();
-  return middle + page - blob_size;  // ends where the forbidden page begins; begins after one where pages have 4096 bytes
+  const std::size_t room = (blob_size + page - 1) / page * page;
+  void* all = mmap(nullptr, room + 2 * page, PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+  if (all == MAP_FAILED) std::abort();
+  auto* middle = static_cast<std::uint8_t*>(all) + page;
+  if (mprotect(middle, room, PROT_READ | PROT_WRITE) != 0) std::abort();
+  return middle + room - blob_size;  // ends where the forbidden page begins
 }
 
 }  // namespace

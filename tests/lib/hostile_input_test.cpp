@@ -316,12 +316,13 @@ TYPED_TEST(HostileInput, OfTheGeometry) {
   Arm<Real> before;
   std::memset(&before, 0x3B, sizeof before);
   CalibratedArm<Real> model_before;
-  std::memset(&model_before, 0x3B, sizeof model_before);
+  std::memset(static_cast<void*>(&model_before), 0x3B, sizeof model_before);
   Arm<Real> good = before;
   ASSERT_EQ(make_arm(g, good), Status::ok);
   const auto expect_refused = [&](const char* what) {
     Arm<Real> arm = before;
-    CalibratedArm<Real> made = model_before;
+    CalibratedArm<Real> made;
+    std::memcpy(static_cast<void*>(&made), &model_before, sizeof made);  // its pointer with it
     EXPECT_EQ(check_geometry(g), Status::bad_input) << what;
     EXPECT_EQ(make_arm(g, arm), Status::bad_input) << what;
     EXPECT_EQ(make_calibrated_arm(g, g, made), Status::bad_input) << what;

@@ -46,7 +46,7 @@ TEST(Show, JsonHasEverythingInMillimetresAndDegrees) {
 }
 
 TEST(Show, TextNamesEveryPart) {
-  const auto run = run_mdhcal({"show", std::string(MDHCAL_SOURCE_DIR) + "/tests/blob/golden/every-field-1.0.blob"});
+  const auto run = run_mdhcal({"show", std::string(MDHCAL_SOURCE_DIR) + "/tests/blob/golden/every-field-2.0.blob"});
   ASSERT_EQ(run.exit_code, 0) << run.err;
   for (const char* part :
        {"Prüfling 8", "SN/2026-0815", "golden_blob.py for format 1.0", "2026-11-21", "rpim", "0.015625", "quasi-optimality",
@@ -105,7 +105,7 @@ TEST(Diff, TurnsAreSeenToo) {
 
 TEST(Diff, RefusesOtherArms) {
   const std::string golden = std::string(MDHCAL_SOURCE_DIR) + "/tests/blob/golden/";
-  const auto run = run_mdhcal({"diff", golden + "every-field-1.0.blob", golden + "six-joints-1.0.blob"});
+  const auto run = run_mdhcal({"diff", golden + "every-field-2.0.blob", golden + "six-joints-2.0.blob"});
   EXPECT_EQ(run.exit_code, 2);
   EXPECT_EQ(run.out, "");
 }

@@ -14,7 +14,7 @@ using tests::read_bytes;
 using tests::run_mdhcal;
 using tests::run_program;
 
-const std::string blob_path = std::string(MDHCAL_SOURCE_DIR) + "/tests/blob/golden/written-arithmetic-8-1.0.blob";
+const std::string blob_path = std::string(MDHCAL_SOURCE_DIR) + "/tests/blob/golden/written-arithmetic-8-2.0.blob";
 
 // The slot header by hand: magic, sequence, the blob's last four bytes, zeros, CRC-32 by zlib.
 std::string with_header(const std::string& blob, const std::string& sequence_hex) {
@@ -89,8 +89,8 @@ TEST(Export, TheArrayCompilesInCAndInCxx) {
   ASSERT_EQ(run_mdhcal({"export", blob_path, "--format", "c", "--symbol", "factory_blob", "-o", folder / "blob.c"}).exit_code, 0);
   tests::write_bytes(folder / "main.c",
                      "#include <stdio.h>\n"
-                     "extern const unsigned char factory_blob[4096];\n"
-                     "int main(void) { return fwrite(factory_blob, 1, sizeof factory_blob, stdout) != 4096; }\n");
+                     "extern const unsigned char factory_blob[8160];\n"
+                     "int main(void) { return fwrite(factory_blob, 1, sizeof factory_blob, stdout) != 8160; }\n");
   const std::vector<std::string> strict{"-Wall", "-Wextra", "-pedantic", "-Werror"};
   const std::vector<std::string> languages[] = {{"gcc", "-std=c99"}, {"gcc", "-x", "c++", "-std=c++17"}};
   for (const auto& language : languages) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The golden blobs, made byte by byte from docs/blob.md by a script, against the library, the writer and a reader in
-// another language. They were made for format 1.0 by golden_blob.py in tests/output on 2026-11-21: they must load forever.
+// another language. They were made for format 2.0 by golden_blob.py in tests/output on 2026-11-29: they must load as long as the format is 2.
 #include <gtest/gtest.h>
 
 #include <cstring>
@@ -19,7 +19,7 @@ using tests::read_bytes;
 
 const std::string source = MDHCAL_SOURCE_DIR;
 
-std::string golden_path(const std::string& name) { return source + "/tests/blob/golden/" + name + "-1.0.blob"; }
+std::string golden_path(const std::string& name) { return source + "/tests/blob/golden/" + name + "-2.0.blob"; }
 
 const std::uint8_t* bytes_of(const std::string& text) { return reinterpret_cast<const std::uint8_t*>(text.data()); }
 
@@ -66,6 +66,8 @@ std::string hexadecimal(const std::uint8_t* bytes, std::size_t size) {
 json as_json(const BlobContent& m) {
   json joints;
   json targets;
+  json functions;
+  json compliance;
   json doubles;
   json floats;
   for (std::size_t i = 0; i < 8; ++i) {
@@ -77,7 +79,15 @@ json as_json(const BlobContent& m) {
                       {"max", joint.max},
                       {"nominal", link_json(m.nominal[i])},
                       {"corrected", link_json(m.geometry.link[i])},
-                      {"coupling", joint.coupling}});
+                      {"coupling", joint.coupling},
+                      {"max_velocity", m.max_velocity[i]}});
+    const JointFunction& f = m.transmission.function[i];
+    functions.push_back({{"order_count", f.order_count},
+                         {"seen_min", f.seen_min_rad},
+                         {"seen_max", f.seen_max_rad},
+                         {"cosine", f.cosine_rad},
+                         {"sine", f.sine_rad}});
+    for (const double k : m.transmission.gravity.compliance[i]) compliance.push_back(k);
     targets.push_back({{"name", m.target[i].name}, {"point", m.target[i].flange_p_m}});
   }
   for (std::size_t i = 0; i < 4; ++i) {
@@ -85,11 +95,12 @@ json as_json(const BlobContent& m) {
     floats.push_back(vector_json(m.float_vector[i]));
   }
   const BlobProvenance& p = m.provenance;
+  const Gravity& gravity = m.transmission.gravity;
   Pose<double> base = m.tracker_T_base;
   if (m.has_base == 0) base = Pose<double>{};  // identity in the model, zero in the bytes
-  return {{"major", 1},
+  return {{"major", 2},
           {"minor", 0},
-          {"flags", m.has_base + 2 * p.has_measurements + 4 * p.has_lambda + 8 * p.has_held_out},
+          {"flags", m.has_base + 2 * p.has_measurements + 4 * p.has_lambda + 8 * p.has_held_out + 16 * p.has_region},
           {"joint_count", m.geometry.joint_count},
           {"target_count", m.target_count},
           {"family", static_cast<int>(m.family)},
@@ -117,6 +128,15 @@ json as_json(const BlobContent& m) {
           {"held_out", {p.mean_before_m, p.max_before_m, p.mean_after_m, p.max_after_m}},
           {"double_vectors", doubles},
           {"float_vectors", floats},
+          {"functions", functions},
+          {"gravity", gravity.direction},
+          {"payload", gravity.payload_kg},
+          {"payload_com", gravity.payload_com_m},
+          {"payload_compliance", gravity.payload_compliance},
+          {"compliance", compliance},
+          {"region_min", p.region_min_m},
+          {"region_max", p.region_max_m},
+          {"lean", {p.lean_min_m, p.lean_max_m}},
           {"algorithm", m.authentication.algorithm},
           {"key_id", hexadecimal(m.authentication.key_id, 8)},
           {"signature", hexadecimal(m.authentication.signature, 64)}};
@@ -176,7 +196,8 @@ TEST(BlobPage, LayoutIdIsTheCrcOfTheFieldList) {
 TEST(BlobPage, FieldListLeavesNoByteOut) {
   std::map<std::string, std::size_t> size{{"u16", 2},    {"u32", 4},     {"i32", 4},            {"f64", 8},
                                           {"f32", 4},    {"bytes", 1},   {"text", 1},           {"joint", 192},
-                                          {"pose", 64},  {"target", 40}, {"double_vector", 192}, {"float_vector", 96}};
+                                          {"pose", 64},  {"target", 40}, {"double_vector", 192}, {"float_vector", 96},
+                                          {"function", 352}};
   std::map<std::string, std::size_t> end;  // by record; "" is the blob
   for (const Row& row : field_list()) {
     const std::size_t dot = row.field.find('.');
@@ -187,7 +208,7 @@ TEST(BlobPage, FieldListLeavesNoByteOut) {
     ASSERT_TRUE(size.contains(row.type.substr(0, bracket))) << row.type;
     end[record] += count * size[row.type.substr(0, bracket)];
   }
-  EXPECT_EQ(end[""], 4096U);
+  EXPECT_EQ(end[""], 8192U);
   for (const auto& [record, bytes] : end) {
     if (!record.empty()) {
       EXPECT_EQ(bytes, size[record]) << record;

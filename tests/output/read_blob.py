@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Reads a parameter blob of format 1 as docs/blob.md describes it and prints every field as JSON.
+"""Reads a parameter blob of format 2 as docs/blob.md describes it and prints every field as JSON.
 
 read_blob.py FILE
 """
@@ -35,24 +35,31 @@ def read(blob):
 
     def joint(offset):
         reserved(offset + 12, 4)
-        reserved(offset + 176, 16)
+        reserved(offset + 184, 8)
         return {"kind": get(offset, "i"), "sign": get(offset + 4, "i"), "flags": get(offset + 8, "I"),
                 "min": get(offset + 16, "d"), "max": get(offset + 24, "d"), "nominal": get(offset + 32, "5d"),
-                "corrected": get(offset + 72, "5d"), "coupling": get(offset + 112, "8d")}
+                "corrected": get(offset + 72, "5d"), "coupling": get(offset + 112, "8d"), "max_velocity": get(offset + 176, "d")}
+
+    def function(offset):
+        reserved(offset + 4, 4)
+        reserved(offset + 24, 8)
+        return {"order_count": get(offset, "I"), "seen_min": get(offset + 8, "d"), "seen_max": get(offset + 16, "d"),
+                "cosine": get(offset + 32, "40f"), "sine": get(offset + 192, "40f")}
 
     def vector(offset, real, size):
         return {"q": get(offset, "8" + real), "pose": get(offset + 8 * size, "7" + real),
                 "inverse_q": get(offset + 15 * size, "8" + real), "inverse_status": get(offset + 23 * size, "i")}
 
-    if len(blob) != 4096:
+    if len(blob) != 8160:
         raise Refused("size")
-    if get(0, "I") != 0xCCBC6BA0 or get(4, "H") != 1 or get(8, "I") != 4096 or get(12, "I") != 0x0D461CE6:
+    if get(0, "I") != 0xCCBC6BA0 or get(4, "H") != 2 or get(8, "I") != 8160 or get(12, "I") != 0x5DFD6ABF:
         raise Refused("magic, version, size or layout id")
-    if get(4092, "I") != zlib.crc32(blob[:4092]):
+    if get(8156, "I") != zlib.crc32(blob[:8156]):
         raise Refused("CRC-32")
-    reserved(3520, 448)
+    reserved(7040, 992)
+    reserved(6392, 8)
     if get(6, "H") == 0:
-        for offset, size in ((48, 16), (2168, 8), (2320, 16), (3972, 4), (3984, 16), (4064, 28),
+        for offset, size in ((48, 16), (2168, 8), (2320, 16), (8036, 4), (8048, 16), (8128, 28),
                              (2556, 4), (2748, 4), (2940, 4), (3132, 4)):
             reserved(offset, size)
     return {
@@ -69,7 +76,11 @@ def read(blob):
         "held_out": get(2336, "4d"),
         "double_vectors": [vector(2368 + 192 * i, "d", 8) for i in range(4)],
         "float_vectors": [vector(3136 + 96 * i, "f", 4) for i in range(4)],
-        "algorithm": get(3968, "I"), "key_id": blob[3976:3984].hex(), "signature": blob[4000:4064].hex(),
+        "functions": [function(3520 + 352 * i) for i in range(8)],
+        "gravity": get(6336, "3d"), "payload": get(6360, "d"), "payload_com": get(6368, "3d"),
+        "payload_compliance": get(6400, "8d"), "compliance": get(6464, "64d"),
+        "region_min": get(6976, "3d"), "region_max": get(7000, "3d"), "lean": get(7024, "2d"),
+        "algorithm": get(8032, "I"), "key_id": blob[8040:8048].hex(), "signature": blob[8064:8128].hex(),
     }
 
 

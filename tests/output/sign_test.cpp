@@ -166,7 +166,7 @@ TEST_F(SignedBlob, TruncatedIsRefused) {
 
 TEST(SignCommands, MakeAKeyAndSign) {
   const tests::TemporaryFolder folder;
-  const std::string blob = std::string(MDHCAL_SOURCE_DIR) + "/tests/blob/golden/six-joints-1.0.blob";
+  const std::string blob = std::string(MDHCAL_SOURCE_DIR) + "/tests/blob/golden/six-joints-2.0.blob";
   ASSERT_EQ(run_mdhcal({"keygen", "-o", folder / "room"}).exit_code, 0);
   struct stat status {};
   ASSERT_EQ(stat((folder / "room.key").c_str(), &status), 0);

@@ -105,7 +105,7 @@ void sweep(const FlashGeometry& geometry, std::initializer_list<std::uint32_t> s
 TEST(PowerCut, OldOrNewOnLargeGranulesInEveryMode) { sweep({256, 8192, 2, 0xFF}, {0xFFFFFFFFU}, true, 1); }
 
 TEST(PowerCut, OldOrNewOnSlotsOfSeveralSectorsErasedToZero) {
-  sweep({256, 1536, 6, 0x00}, {5U, 0xFFFFFFFFU, 0x7FFFFFFFU}, false, 1);
+  sweep({256, 1536, 12, 0x00}, {5U, 0xFFFFFFFFU, 0x7FFFFFFFU}, false, 1);
 }
 
 // The flash word of an STM32H7: more than 130 operations that change the flash. An emulator would take minutes for

@@ -126,7 +126,7 @@ void for_each_failure(const FakeFlash& full, FakeFlash& work, int step, Visit vi
 }
 
 TEST(ReadFailure, LosesNoBlobAndIsNeverTakenForAnEmptySlot) {
-  for (const FlashGeometry& geometry : {FlashGeometry{32, 8192, 2, 0xFF}, FlashGeometry{256, 1536, 6, 0x00}}) {
+  for (const FlashGeometry& geometry : {FlashGeometry{32, 8192, 2, 0xFF}, FlashGeometry{256, 1536, 12, 0x00}}) {
     FakeFlash work(geometry);
     int sessions = 0;
     for (std::size_t kind = 0; kind < std::size(fills); ++kind) {

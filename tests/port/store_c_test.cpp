@@ -94,7 +94,7 @@ TEST(StoreInC, RefusesWhatIsMissing) {
   EXPECT_EQ(mdhcal_load_newest(&store.flash, nullptr, store.buffer, &store.state), MDHCAL_BAD_INPUT);
   EXPECT_EQ(mdhcal_load_newest(&store.flash, &store.judge, nullptr, &store.state), MDHCAL_BAD_INPUT);
   EXPECT_EQ(mdhcal_load_newest(&store.flash, &store.judge, store.buffer, nullptr), MDHCAL_BAD_INPUT);
-  EXPECT_EQ(mdhcal_update(&store.flash, &store.judge, nullptr, 4096, &store.state), MDHCAL_BAD_INPUT);
+  EXPECT_EQ(mdhcal_update(&store.flash, &store.judge, nullptr, blob_size, &store.state), MDHCAL_BAD_INPUT);
   EXPECT_EQ(mdhcal_erase_store(&store.flash, nullptr), MDHCAL_BAD_INPUT);
   mdhcal_flash without = store.flash;
   without.erase = nullptr;

@@ -12,14 +12,15 @@ constexpr FlashGeometry h7{32, 8192, 2, 0xFF};
 
 TEST(Store, SlotsAreWholeSectors) {
   EXPECT_EQ(slot_bytes({32, 8192, 2, 0xFF}), 8192U);
-  EXPECT_EQ(slot_bytes({8, 2048, 6, 0xFF}), 6144U);
-  EXPECT_EQ(slot_bytes({1, 4128, 2, 0x00}), 4128U);
+  EXPECT_EQ(slot_bytes({8, 2048, 8, 0xFF}), 8192U);
+  EXPECT_EQ(slot_bytes({8, 3072, 6, 0xFF}), 9216U);
+  EXPECT_EQ(slot_bytes({1, 8192, 2, 0x00}), 8192U);
   EXPECT_EQ(slot_bytes({32, 131072, 2, 0xFF}), 131072U);
 }
 
 TEST(Store, RefusesAGeometryThatItCannotUse) {
   const FlashGeometry unusable[] = {{0, 8192, 2, 0xFF},  {24, 8184, 2, 0xFF},   {512, 8192, 2, 0xFF}, {32, 0, 2, 0xFF},
-                                    {32, 8200, 2, 0xFF}, {32, 8192, 1, 0xFF},   {8, 2048, 5, 0xFF},   {32, 8192, 2, 0x55},
+                                    {32, 8200, 2, 0xFF}, {32, 8192, 1, 0xFF},   {8, 2048, 7, 0xFF},   {32, 8192, 2, 0x55},
                                     {32, 16, 1000, 0xFF}, {32, 1U << 30, 3, 0xFF}, {32, 0xFFFFFFE0U, 2, 0xFF}};
   for (const FlashGeometry& geometry : unusable) {
     EXPECT_EQ(slot_bytes(geometry), 0U);
@@ -157,7 +158,7 @@ TEST(Store, TheSequenceWrapsAround) {
 
 // Every operation fails once, power on: the update says so, the old blob stays, and stays after a restart too.
 TEST(Store, AFailedOperationKeepsTheOldBlob) {
-  for (const FlashGeometry& geometry : {h7, FlashGeometry{256, 2048, 6, 0x00}}) {
+  for (const FlashGeometry& geometry : {h7, FlashGeometry{256, 2048, 8, 0x00}}) {
     FakeFlash factory(geometry);
     ASSERT_EQ(flash_factory(factory, 0, 1, blob_of(1)), Status::ok);
     FakeFlash fake(geometry);

@@ -7,6 +7,7 @@
 #include "mdhcal/blob_layout.hpp"
 #include "mdhcal/geometry.hpp"
 #include "mdhcal/status.hpp"
+#include "mdhcal/transmission.hpp"
 
 namespace mdhcal {
 
@@ -51,6 +52,9 @@ struct BlobProvenance {
   double lambda;                 ///< regularization parameter [mm^2], or [1] where the residuals have a sigma
   double mean_before_m, max_before_m;  ///< held-out position error with the nominal geometry [m]
   double mean_after_m, max_after_m;    ///< held-out position error with the corrected geometry [m]
+  std::int32_t has_region;             ///< 1 if the region holds: outside it nobody has seen what the calibration is worth
+  double region_min_m[3], region_max_m[3];  ///< of the flange's positions that were measured, in the base frame [m]
+  double lean_min_m, lean_max_m;       ///< of their distances from the plumb line through the base's origin [m]
 };
 
 /// One self-test vector: what the host computed.
@@ -80,6 +84,7 @@ struct BlobDescription {
   ArmFamily family;
   std::uint32_t security_counter; ///< a loader refuses a blob below its stored minimum
   Tolerances tolerances;
+  double max_velocity[max_joints];  ///< the fastest that each joint may be asked to move [rad/s] or [m/s]; 0: not stated
   BlobProvenance provenance;
 };
 
@@ -87,6 +92,7 @@ struct BlobDescription {
 struct BlobContent : BlobDescription {
   Geometry geometry;             ///< corrected: what the arm is
   Link nominal[max_joints];      ///< what its drawing says; joints and flange as in `geometry`
+  Transmission transmission;     ///< of the corrected arm, beyond signs and couplings; all zero: none
   std::uint32_t arithmetic_id;   ///< of the library that computed the vectors
   std::int32_t double_vector_count, float_vector_count;  ///< 0 ... max_vectors
   SelfTestVector<double> double_vector[max_vectors];
@@ -112,7 +118,9 @@ struct DecodeOptions {
 /// every check, or not touched. Returns ok, or in this order of checks blob_size, blob_magic, blob_version, blob_size
 /// (stated), blob_layout, blob_crc, blob_unsigned, blob_signature, blob_counter, blob_reserved, blob_value,
 /// blob_deviation (a length of the corrected geometry over max_deviation_m() from its nominal, or an angle over
-/// max_deviation_rad()), blob_serial. An ok model's geometry passes check_geometry().
+/// max_deviation_rad(), or a term of the transmission over its
+/// bound, mdhcal/transmission.hpp), blob_serial. An ok model's geometry passes check_geometry(), its transmission
+/// check_transmission().
 Status decode(const std::uint8_t* bytes, std::size_t size, const DecodeOptions& options, BlobContent& model) noexcept;
 
 }  // namespace mdhcal

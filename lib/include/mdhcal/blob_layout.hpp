@@ -4,25 +4,27 @@
 #include <cstddef>
 #include <cstdint>
 
-/// Where every field of the parameter blob lies: format 1.0, docs/blob.md. Byte offsets from the start of the blob;
+/// Where every field of the parameter blob lies: format 2.0, docs/blob.md. Byte offsets from the start of the blob;
 /// all numbers little-endian, reals in IEEE 754 binary64 unless the name says float. The asserts hold the contract.
 namespace mdhcal::blob_layout {
 
-inline constexpr std::size_t size = 4096;
+/// With the slot's header 8 KiB: one sector of a flash whose sectors are small.
+inline constexpr std::size_t size = 8160;
 inline constexpr std::size_t granule = 32;
 
 inline constexpr std::uint32_t magic_value = 0xCCBC6BA0U;
-inline constexpr std::uint16_t major_value = 1;
+inline constexpr std::uint16_t major_value = 2;
 inline constexpr std::uint16_t minor_value = 0;
 /// CRC-32 of the canonical field list in docs/blob.md, constant within a major version.
-inline constexpr std::uint32_t layout_id_value = 0x0D461CE6U;
+inline constexpr std::uint32_t layout_id_value = 0x5DFD6ABFU;
 
 /// Bits of `flags`. A reader refuses an unknown bit from `critical_flags`; other unknown bits only in its own minor.
 inline constexpr std::uint32_t flag_base = 1U << 0U;        ///< tracker_T_base is stated
 inline constexpr std::uint32_t flag_calibrated = 1U << 1U;  ///< made from measurements: digest and counts are stated
 inline constexpr std::uint32_t flag_lambda = 1U << 2U;      ///< lambda is stated
 inline constexpr std::uint32_t flag_held_out = 1U << 3U;    ///< the held-out errors are stated
-inline constexpr std::uint32_t known_flags = flag_base | flag_calibrated | flag_lambda | flag_held_out;
+inline constexpr std::uint32_t flag_region = 1U << 4U;      ///< the region that was measured is stated
+inline constexpr std::uint32_t known_flags = flag_base | flag_calibrated | flag_lambda | flag_held_out | flag_region;
 inline constexpr std::uint32_t critical_flags = 0xFFFF0000U;
 
 /// Signature algorithms.
@@ -76,10 +78,11 @@ inline constexpr std::size_t max = min + 8;                  // f64
 inline constexpr std::size_t nominal = max + 8;              // 5 f64: alpha, a, theta, d, beta
 inline constexpr std::size_t corrected = nominal + 40;       // 5 f64: alpha, a, theta, d, beta
 inline constexpr std::size_t coupling = corrected + 40;      // 8 f64
-inline constexpr std::size_t reserved_end = coupling + 64;   // 16 bytes, critical
-inline constexpr std::size_t reserved_end_size = 16;
+inline constexpr std::size_t max_velocity = coupling + 64;   // f64, 0: not stated
+inline constexpr std::size_t reserved_end = max_velocity + 8;  // 8 bytes, critical
+inline constexpr std::size_t reserved_end_size = 8;
 static_assert(kind == 0 && sign == 4 && flags == 8 && reserved == 12 && min == 16 && max == 24 && nominal == 32 &&
-              corrected == 72 && coupling == 112 && reserved_end == 176 &&
+              corrected == 72 && coupling == 112 && max_velocity == 176 && reserved_end == 184 &&
               reserved_end + reserved_end_size == joint_size);
 }  // namespace joint
 
@@ -137,10 +140,42 @@ static_assert(double_vectors == 2368 && float_vectors == 3136);
 static_assert((8 + 7 + 8) * 8 + 4 == double_vector_reserved && double_vector_reserved + 4 == double_vector_size);
 static_assert((8 + 7 + 8) * 4 + 4 == float_vector_size);
 
+// Joint functions: 8 records.
+inline constexpr std::size_t functions = float_vectors + vector_slots * float_vector_size;
+inline constexpr std::size_t function_size = 352;
+inline constexpr std::size_t function_orders = 40;
+static_assert(functions == 3520);
+namespace function {
+inline constexpr std::size_t order_count = 0;                  // u32
+inline constexpr std::size_t reserved = order_count + 4;       // 4 bytes, critical
+inline constexpr std::size_t seen_min = reserved + 4;          // f64
+inline constexpr std::size_t seen_max = seen_min + 8;          // f64
+inline constexpr std::size_t reserved_middle = seen_max + 8;   // 8 bytes, critical
+inline constexpr std::size_t cosine = reserved_middle + 8;     // 40 f32
+inline constexpr std::size_t sine = cosine + 4 * function_orders;  // 40 f32
+static_assert(reserved == 4 && seen_min == 8 && seen_max == 16 && reserved_middle == 24 && cosine == 32 && sine == 192 &&
+              sine + 4 * function_orders == function_size);
+}  // namespace function
+
+// Gravity: direction, 3 f64; the calibration's payload, f64; its centre of mass, 3 f64.
+inline constexpr std::size_t gravity = functions + joint_slots * function_size;
+inline constexpr std::size_t payload = gravity + 24;
+inline constexpr std::size_t payload_com = payload + 8;
+inline constexpr std::size_t gravity_reserved = payload_com + 24;         // 8 bytes, critical
+inline constexpr std::size_t payload_compliance = gravity_reserved + 8;   // 8 f64
+inline constexpr std::size_t compliance = payload_compliance + 64;        // 8 x 8 f64, by joint
+static_assert(gravity == 6336 && payload == 6360 && payload_com == 6368 && gravity_reserved == 6392 &&
+              payload_compliance == 6400 && compliance == 6464);
+
+// The region that was measured: least and largest flange position, 3 f64 each; distance from the plumb line, 2 f64.
+inline constexpr std::size_t region = compliance + 512;
+inline constexpr std::size_t region_size = 64;
+static_assert(region == 6976);
+
 // Room for model terms to come: critical.
-inline constexpr std::size_t model_room = float_vectors + vector_slots * float_vector_size;
-inline constexpr std::size_t model_room_size = 448;
-static_assert(model_room == 3520);
+inline constexpr std::size_t model_room = region + region_size;
+inline constexpr std::size_t model_room_size = 992;
+static_assert(model_room == 7040);
 
 // Authentication: the signature covers every byte before this area.
 inline constexpr std::size_t authentication = model_room + model_room_size;
@@ -153,13 +188,15 @@ inline constexpr std::size_t signature = key_reserved + 16;            // 64 byt
 inline constexpr std::size_t signature_size = 64;
 inline constexpr std::size_t end_reserved = signature + signature_size;  // 28 bytes, ancillary
 inline constexpr std::size_t crc = end_reserved + 28;                  // u32, of every byte before it
-static_assert(authentication == 3968 && algorithm == 3968 && key_id == 3976 && key_reserved == 3984 &&
-              signature == 4000 && end_reserved == 4064 && crc == 4092 && crc + 4 == size);
+static_assert(authentication == 8032 && algorithm == 8032 && key_id == 8040 && key_reserved == 8048 &&
+              signature == 8064 && end_reserved == 8128 && crc == 8156 && crc + 4 == size);
 
 // Each area begins on a flash granule.
 static_assert(name % granule == 0 && serial % granule == 0 && joints % granule == 0 && joint_size % granule == 0 &&
               last_T_flange % granule == 0 && targets % granule == 0 && tolerances % granule == 0 &&
               tool_version % granule == 0 && held_out % granule == 0 && double_vectors % granule == 0 &&
-              float_vectors % granule == 0 && model_room % granule == 0 && authentication % granule == 0);
+              float_vectors % granule == 0 && functions % granule == 0 && function_size % granule == 0 &&
+              gravity % granule == 0 && payload_compliance % granule == 0 && compliance % granule == 0 &&
+              region % granule == 0 && model_room % granule == 0 && authentication % granule == 0);
 
 }  // namespace mdhcal::blob_layout

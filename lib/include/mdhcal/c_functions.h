@@ -4,7 +4,8 @@
  * outputs are untouched.
  */
 
-/* Storage of a calibrated arm and of a compensator; the double is there for alignment. */
+/* Storage of a calibrated arm and of a compensator; the double is there for alignment. An arm with joint functions is not
+ * copied to other storage (every function refuses the copy), and stays until refers_to() says 0 for every compensator. */
 typedef union MDHCAL_C_NAME(calibrated_arm) {
   double align;
   unsigned char bytes[MDHCAL_ARM_BYTES];
@@ -46,6 +47,7 @@ typedef struct MDHCAL_C_NAME(tick_report) {
   int32_t iterations;
   uint32_t step_mask;
   uint32_t limit_mask;
+  uint32_t unseen_mask;
 } MDHCAL_C_NAME(tick_report);
 typedef struct MDHCAL_C_NAME(solutions) {
   int32_t count;
@@ -61,7 +63,7 @@ typedef struct MDHCAL_C_NAME(rate_limits) {
 /* load() of mdhcal/calibrated_arm.hpp. `arm_size` is sizeof *arm and `abi_version` MDHCAL_ABI_VERSION of the header that the
  * caller was compiled with: another one is MDHCAL_BAD_INPUT. mdhcal_usable() says of the status whether the arm may be
  * used; otherwise it is untouched. `demands` may be NULL: the blob's serial, signature and counter are then not looked at.
- * Needs about 8 KiB of stack; once, before the loop. */
+ * Needs about 16 KiB of stack; once, before the loop. */
 int32_t MDHCAL_C_NAME(load)(MDHCAL_C_NAME(calibrated_arm)* arm, size_t arm_size, uint32_t abi_version,
                             const uint8_t* blob, size_t blob_size, const mdhcal_demands* demands);
 /* 1 ... 8, or 0 if the arm was not loaded. */
@@ -92,9 +94,13 @@ int32_t MDHCAL_C_NAME(start_ramp)(MDHCAL_C_NAME(compensator)* compensator, const
 int32_t MDHCAL_C_NAME(start_frame_ramp)(MDHCAL_C_NAME(compensator)* compensator,
                                         const MDHCAL_C_NAME(pose)* base_T_user,
                                         const MDHCAL_C_NAME(pose)* flange_T_tool, uint32_t ticks);
+int32_t MDHCAL_C_NAME(start_payload_ramp)(MDHCAL_C_NAME(compensator)* compensator, MDHCAL_REAL_TYPE payload_kg,
+                                          uint32_t ticks);
 int32_t MDHCAL_C_NAME(advance_ramp)(MDHCAL_C_NAME(compensator)* compensator);
 /* Ticks until it is at rest; 0 for one that was not started, too. */
 uint32_t MDHCAL_C_NAME(ramp_ticks_left)(const MDHCAL_C_NAME(compensator)* compensator);
+/* 1 as long as the arm must not change for the compensator's sake, else 0. */
+int32_t MDHCAL_C_NAME(refers_to)(const MDHCAL_C_NAME(compensator)* compensator, const MDHCAL_C_NAME(calibrated_arm)* arm);
 
 /* default_tick_options() of mdhcal/calibrated_arm.hpp: the blob's tolerances, and step limits for the loop's period [s]. */
 int32_t MDHCAL_C_NAME(default_tick_options)(const MDHCAL_C_NAME(calibrated_arm)* arm, MDHCAL_REAL_TYPE period_s,

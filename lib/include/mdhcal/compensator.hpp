@@ -22,16 +22,26 @@ constexpr Frames<Real> identity_frames() noexcept {
 }
 
 /// The parameters of an arm and its frames that a ramp moves: of each link alpha, a, theta, d, beta; the joints' limits, the
-/// reach; flange, tool and user frame as quaternion and position.
+/// reach, the payload; flange, tool and user frame as quaternion and position.
 template <class Real>
 struct RampParameters {
   Real link[max_joints][5];
-  Real min[max_joints], max[max_joints], reach_m;
+  Real min[max_joints], max[max_joints], reach_m, payload_kg;
   Pose<Real> pose[3];
 };
 
+/// How the terms of the transmission (joint functions, sag) come and go within a ramp.
+template <class Real>
+struct TermsRamp {
+  ArmTerms<Real> before;  ///< the terms that the arm has until `ticks`, then the goal's
+  std::int32_t has_before;
+  std::uint32_t ticks;    ///< 0: the goal's from the beginning; ticks_total: they are the goal's, or the goal has none
+  Real share, rate;       ///< their share and its change a tick, as the ramp began
+};
+
 /// One loop's compensator: the arm that the controller believes and the one that the loop is on, which a ramp moves. It
-/// holds copies, so that the CalibratedArm may go once a call has returned. Plain data, some 5 KiB (float 3); one a loop.
+/// holds copies, but for the table of joint functions: a CalibratedArm that has some may change or go when refers_to() says no.
+/// Plain data, some 13 KiB (float 7); one a loop.
 /// Its functions are for the thread that runs the loop: none of them locks, and none may run beside another on the same
 /// compensator. What prepares a new calibration in another thread hands a finished CalibratedArm over to the loop's thread
 /// (a pointer in an atomic will do), which then calls start_ramp().
@@ -46,6 +56,9 @@ struct Compensator {
   Frames<Real> goal_frames;
   RampParameters<Real> offset; ///< present less goal, as the ramp began
   RampParameters<Real> rate;   ///< its change a tick, as the ramp began
+  TermsRamp<Real> terms;
+  Real payload_kg;             ///< the payload that was asked for
+  std::int32_t has_payload;    ///< 1 if one was
   Arm<Real> arm;               ///< the arm of this tick, the tool's frame in the place of the flange's
   Frames<Real> frames;         ///< the frames of this tick
   std::int32_t has_frames;     ///< 0 if both are the identity
@@ -59,6 +72,8 @@ Status start_at_rest(const CalibratedArm<float>& arm, Model model, Compensator<f
 /// flange, limits that both have, frames) goes from where it is, at the velocity that it has, to its goal along a quintic,
 /// where it comes to rest: offset (1 - 10 s^3 + 15 s^4 - 6 s^5) + rate (s - 6 s^3 + 8 s^4 - 3 s^5), so that a ramp may be
 /// turned back or started anew in the middle of another without a jump of velocity. With 0 ticks it is there at once.
+/// Terms of the transmission that one of the two models has come or go as a whole along the quintic; where the two have
+/// different ones, those of the first go in the first half and those of the goal come in the second.
 /// The velocity of the ramp before fades within what that had left, so that nothing overshoots by more than 0.15 of it.
 /// Returns ok or bad_input (the joints differ in count, kinds, signs or couplings; compensator untouched).
 Status start_ramp(Compensator<double>& compensator, const CalibratedArm<double>& arm, Model model,
@@ -69,6 +84,18 @@ Status start_ramp(Compensator<float>& compensator, const CalibratedArm<float>& a
 /// The same to other frames, on the model that the loop is on or on its way to.
 Status start_frame_ramp(Compensator<double>& compensator, const Frames<double>& frames, std::uint32_t ticks) noexcept;
 Status start_frame_ramp(Compensator<float>& compensator, const Frames<float>& frames, std::uint32_t ticks) noexcept;
+
+/// The same to another payload [kg], which from then on is that of every model that knows what a payload does. Returns ok or
+/// bad_input (as set_payload(); compensator untouched).
+Status start_payload_ramp(Compensator<double>& compensator, double payload_kg, std::uint32_t ticks) noexcept;
+Status start_payload_ramp(Compensator<float>& compensator, float payload_kg, std::uint32_t ticks) noexcept;
+
+/// Whether the loop is on this arm's joint functions or on the way to or from them: until then it must not change.
+template <class Real>
+constexpr bool refers_to(const Compensator<Real>& compensator, const CalibratedArm<Real>& arm) noexcept {
+  const JointFunctionTable* table = &arm.functions;
+  return compensator.arm.terms.functions == table || compensator.goal_arm.terms.functions == table;
+}
 
 /// One tick of the ramp; nothing at rest. Returns ok or bad_input.
 Status advance_ramp(Compensator<double>& compensator) noexcept;
@@ -106,7 +133,8 @@ Status pose_to_pose(const Compensator<float>& compensator, const TickOptions<flo
                     TickReport<float>* report = nullptr) noexcept;
 
 /// What the ramp itself does to the tool at the joints q: velocity of its origin [m], angular velocity [rad], both a tick and
-/// in the base frame, less those of the user frame's motion. Zero at rest. Returns ok or bad_input.
+/// in the base frame, less those of the user frame's motion; but for what the change of the geometry does to the sag, some
+/// thousandth of it. Zero at rest. Returns ok or bad_input.
 Status ramp_motion(const Compensator<double>& compensator, const double* q, double* motion) noexcept;
 Status ramp_motion(const Compensator<float>& compensator, const float* q, float* motion) noexcept;
 

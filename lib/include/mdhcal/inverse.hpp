@@ -59,6 +59,7 @@ struct TickReport {
   std::int32_t iterations;      ///< evaluations of the arm
   std::uint32_t step_mask;      ///< bit i: joint i rests on its step limit
   std::uint32_t limit_mask;     ///< bit i: joint i rests on a joint limit, or is outside it
+  std::uint32_t unseen_mask;    ///< bit i: the calibration did not see this reading of joint i: its joint function has faded
 };
 
 /// Tolerances 1e-10 m and rad (float 5e-6), no step limit, position weighted 1000 times over rotation, 14 iterations,

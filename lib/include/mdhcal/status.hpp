@@ -28,7 +28,7 @@ enum class [[nodiscard]] Status : std::int32_t {
   blob_serial = 21,     ///< Made for another robot than the one the caller named.
   blob_value = 22,      ///< A value is not finite or outside its valid range.
   blob_reserved = 23,   ///< A reserved byte is not zero.
-  blob_deviation = 24,  ///< The corrected geometry is further from its nominal than the compiled bound.
+  blob_deviation = 24,  ///< The corrected geometry, a joint function or the sag is over the compiled bound.
   blob_unsigned = 25,   ///< A verifier is set and the blob carries no signature.
   blob_signature = 26,  ///< The signature does not verify.
   blob_counter = 27,    ///< The security counter is lower than the stored minimum.

@@ -16,7 +16,7 @@ inline constexpr std::int32_t fade_sectors = 4;
 /// A joint's periodic error, added to its coordinate [rad]; r: the joint's own reading [rad], whatever its sign and couplings:
 ///   f(r) = w(r) sum over k = 1 ... order_count of  cosine_rad[k-1] cos(k r) + sine_rad[k-1] sin(k r).
 /// The window w is 1 at the readings seen, counted modulo a turn and rounded inwards to ends of sectors, and falls to 0 on
-/// both sides as 1 - 3 s^2 + 2 s^3 does. Less than two sectors short of a turn, it is 1 everywhere. f has period 2 pi.
+/// both sides as 1 - 3 s^2 + 2 s^3 does. Less than four sectors short of a turn, it is 1 everywhere. f has period 2 pi.
 /// Coefficients are float: eight joints of double would not fit the blob, and the rounding is below 1e-9 rad.
 struct JointFunction {
   double seen_min_rad, seen_max_rad;  ///< the readings that the calibration saw, min < max; both 0: not stated
@@ -53,6 +53,9 @@ struct Transmission {
 inline constexpr double default_max_joint_function_rad = 0.005;  ///< of the sum over orders of the amplitudes [rad]
 inline constexpr double default_max_joint_function_slope = 0.1;  ///< of the sum over orders of order times amplitude [1]
 inline constexpr double default_max_sag_rad = 0.02;              ///< of a joint's sag in any posture, payload included [rad]
+
+/// The bound of the sag that this library was compiled with [rad].
+double max_sag_rad() noexcept;
 
 /// Whether a transmission is valid for a geometry that check_geometry() accepts. Returns ok; bad_input (a number that is not
 /// finite or out of its range; a function or compliance of a joint that slides; something beyond joint_count or order_count;

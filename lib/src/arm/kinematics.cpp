@@ -4,6 +4,7 @@
 #include "arm/chain.hpp"
 #include "number/real.hpp"
 #include "arm/rotation.hpp"
+#include "arm/terms.hpp"
 #include "number/sin_cos.hpp"
 #include "number/compare.hpp"
 
@@ -29,9 +30,13 @@ struct LinkTurn {
   Real sin_alpha, cos_alpha, sine, cosine, a, d;
 };
 
-[[gnu::always_inline]] inline void read_link(const Arm<Real>& arm, std::int32_t i, const Real* q, LinkTurn& t) {
+// The joint coordinate but for the terms.
+[[gnu::always_inline]] inline Real plain_coordinate(const Arm<Real>& arm, std::int32_t i, const Real* q) {
+  return arm.coupled == 0 ? arm.link[i].sign * q[i] : coupled_coordinate(arm, i, q);
+}
+
+[[gnu::always_inline]] inline void read_link(const Arm<Real>& arm, std::int32_t i, Real coordinate, LinkTurn& t) {
   const ArmLink<Real>& link = arm.link[i];
-  const Real coordinate = arm.coupled == 0 ? link.sign * q[i] : coupled_coordinate(arm, i, q);
   Real theta = link.theta_rad;
   t.d = link.d_m;
   if (slides(arm, i)) {
@@ -46,11 +51,12 @@ struct LinkTurn {
 }
 
 // Rot_y(beta): the rotation's first and third column. Most links have none.
+template <int rows>
 [[gnu::always_inline]] inline void tilt(const ArmLink<Real>& link, Real* r) {
   const Real sine = link.sin_beta;
   if (!(magnitude(sine) > Real{0})) return;
   const Real cosine = link.cos_beta;
-  for (int row = 0; row < 3; ++row, r += 3) {
+  for (int row = 0; row < rows; ++row, r += 3) {
     const Real x = r[0];
     const Real z = r[2];
     r[0] = cosine * x - sine * z;
@@ -97,9 +103,8 @@ inline void keep(const Frame<Real>& frame, Real* axis, Real* origin) {
 // base_T_i = base_T_{i-1} A_i, in place; of i = 0 base_T_1. Where a column of the Jacobian is asked for, it receives a point
 // on the joint's axis and the axis in the base frame.
 template <bool with_column>
-[[gnu::always_inline]] inline void append_link(const Arm<Real>& arm, std::int32_t i, const Real* q, Frame<Real>& frame, Real* column) {
-  LinkTurn t;
-  read_link(arm, i, q, t);
+[[gnu::always_inline]] inline void append_turn(const Arm<Real>& arm, std::int32_t i, const LinkTurn& t, Frame<Real>& frame,
+                                               Real* column) {
   if (i == 0) {
     first_turn(t, frame);
   } else {
@@ -108,7 +113,79 @@ template <bool with_column>
     turn_row(t, frame.rotation + 6, frame.position_m[2]);
   }
   if constexpr (with_column) keep(frame, column + 3, column);
-  tilt(arm.link[i], frame.rotation);
+  tilt<3>(arm.link[i], frame.rotation);
+}
+
+template <bool with_column>
+[[gnu::always_inline]] inline void append_link(const Arm<Real>& arm, std::int32_t i, const Real* q, Frame<Real>& frame, Real* column) {
+  LinkTurn t;
+  read_link(arm, i, plain_coordinate(arm, i, q), t);
+  append_turn<with_column>(arm, i, t, frame, column);
+}
+
+// The arm before sag, seen across gravity, and along it.
+template <bool along>
+inline void find_levers(const Arm<Real>& arm, const LinkTurn* turn, Levers<along>& levers) {
+  const ArmTerms<Real>& terms = arm.terms;
+  Real row[9] = {terms.across[0][0], terms.across[0][1], terms.across[0][2], terms.across[1][0], terms.across[1][1],
+                 terms.across[1][2], terms.across[2][0], terms.across[2][1], terms.across[2][2]};
+  Seen<along> at{};
+  for (std::int32_t i = 0; i < arm.joint_count; ++i) {
+    turn_row(turn[i], row, at.u);
+    turn_row(turn[i], row + 3, at.v);
+    levers.axis[i].u = row[2];
+    levers.axis[i].v = row[5];
+    if constexpr (along) {
+      turn_row(turn[i], row + 6, at.w);
+      levers.axis[i].w = row[8];
+    }
+    levers.point[i] = at;
+    tilt<along ? 3 : 2>(arm.link[i], row);
+  }
+  const auto seen = [&](const Real* p) {
+    Seen<along> point = at;
+    point.u += dot(row, p);
+    point.v += dot(row + 3, p);
+    if constexpr (along) point.w += dot(row + 6, p);
+    return point;
+  };
+  levers.point[arm.joint_count] = seen(terms.flange_p_m);
+  levers.payload = seen(terms.payload_p_m);
+}
+
+// What all links do, terms included. With `slopes`: the sag's derivative by the coordinates before it, that of the joint
+// functions by motion of the own coordinate before the terms and, where it is not null, `by_terms`: what the terms add.
+template <bool slopes>
+[[gnu::noinline]] void read_links(const Arm<Real>& arm, const Real* q, LinkTurn* turn, Real (*sag_slope)[max_joints],
+                                              FunctionValue* function, Real* by_terms) {
+  const std::int32_t joints = arm.joint_count;
+  const JointFunctionTable* table = arm.terms.functions;
+  for (std::int32_t i = 0; i < joints; ++i) {
+    Real coordinate = plain_coordinate(arm, i, q);
+    if (table != nullptr) {
+      Real error;
+      if constexpr (slopes) {
+        function[i] = function_value(table->coefficient[i], q[i]);
+        error = arm.terms_share * function[i].value;
+      } else {
+        error = arm.terms_share * function_at(table->coefficient[i], q[i]);
+      }
+      coordinate += error;
+      if (by_terms != nullptr) by_terms[i] = error;
+    } else if (by_terms != nullptr) {
+      by_terms[i] = 0;
+    }
+    read_link(arm, i, coordinate, turn[i]);
+  }
+  if (arm.terms.sag_mask == 0U) return;
+  Levers<slopes> levers;
+  Real sag[max_joints];
+  find_levers(arm, turn, levers);
+  sag_of(arm, levers, sag, sag_slope);
+  for (std::int32_t i = 0; i < joints; ++i) {
+    turn_by_sag(sag[i], turn[i].sine, turn[i].cosine);
+    if (by_terms != nullptr) by_terms[i] += sag[i];
+  }
 }
 
 inline void append_flange(const Arm<Real>& arm, Frame<Real>& frame) {
@@ -127,17 +204,17 @@ bool readings_valid(const Arm<Real>& arm, const Real* q) noexcept {
   return true;
 }
 
-void evaluate(const Arm<Real>& arm, const Real* q, Frame<Real>& base_T_flange) noexcept {
-  for (std::int32_t i = 0; i < arm.joint_count; ++i) append_link<false>(arm, i, q, base_T_flange, nullptr);
+namespace {
+
+[[gnu::noinline]] void evaluate_terms(const Arm<Real>& arm, const Real* q, Frame<Real>& base_T_flange) {
+  LinkTurn turn[max_joints];
+  read_links<false>(arm, q, turn, nullptr, nullptr, nullptr);
+  for (std::int32_t i = 0; i < arm.joint_count; ++i) append_turn<false>(arm, i, turn[i], base_T_flange, nullptr);
   append_flange(arm, base_T_flange);
 }
 
-void evaluate(const Arm<Real>& arm, const Real* q, Frame<Real>& base_T_flange, Jacobian<Real>& coordinates) noexcept {
-  for (std::int32_t i = 0; i < arm.joint_count; ++i) {
-    append_link<true>(arm, i, q, base_T_flange, coordinates.column[i]);
-  }
-  append_flange(arm, base_T_flange);
-  const Real* p = base_T_flange.position_m;
+// From points and axes to velocities of the flange's origin.
+[[gnu::always_inline]] inline void to_velocities(const Arm<Real>& arm, const Real* p, Jacobian<Real>& coordinates) {
   for (std::int32_t i = 0; i < arm.joint_count; ++i) {
     Real* column = coordinates.column[i];
     const Real x = column[3], y = column[4], z = column[5];
@@ -153,6 +230,112 @@ void evaluate(const Arm<Real>& arm, const Real* q, Frame<Real>& base_T_flange, J
     column[1] = z * lever_x - x * lever_z;
     column[2] = x * lever_y - y * lever_x;
   }
+}
+
+// The Jacobian by coordinates before the terms: J (1 + sag's slopes) (1 + functions' slopes by motion).
+[[gnu::noinline]] void add_slopes(const Arm<Real>& arm, const Real (*sag_slope)[max_joints], const FunctionValue* function,
+                                  Jacobian<Real>& jacobian) {
+  const std::int32_t joints = arm.joint_count;
+  if (arm.terms.sag_mask != 0U) {
+    const Jacobian<Real> geometric = jacobian;
+    for (std::int32_t j = 0; j < joints; ++j) {
+      Real* to = jacobian.column[j];
+      Real a = to[0], b = to[1], c = to[2], d = to[3], e = to[4], f = to[5];
+      for (std::int32_t i = 0; i < joints; ++i) {
+        const Real s = sag_slope[i][j];
+        const Real* from = geometric.column[i];
+        a += s * from[0];
+        b += s * from[1];
+        c += s * from[2];
+        d += s * from[3];
+        e += s * from[4];
+        f += s * from[5];
+      }
+      to[0] = a;
+      to[1] = b;
+      to[2] = c;
+      to[3] = d;
+      to[4] = e;
+      to[5] = f;
+    }
+  }
+  if (arm.terms.functions == nullptr) return;
+  if (arm.coupled == 0) {
+    for (std::int32_t j = 0; j < joints; ++j) {
+      const Real scale = Real{1} + arm.link[j].sign * arm.terms_share * function[j].slope;
+      Real* column = jacobian.column[j];
+      for (int k = 0; k < 6; ++k) column[k] *= scale;
+    }
+    return;
+  }
+  // A function's slope is by its own reading, which the coordinates' motion is turned back into.
+  const Jacobian<Real> before = jacobian;
+  for (std::int32_t j = 0; j < joints; ++j) {
+    for (std::int32_t i = 0; i < joints; ++i) {
+      const Real s = arm.terms_share * function[i].slope * arm.inverse_map[i][j];
+      for (int k = 0; k < 6; ++k) jacobian.column[j][k] += s * before.column[i][k];
+    }
+  }
+}
+
+[[gnu::noinline]] void evaluate_terms(const Arm<Real>& arm, const Real* q, Frame<Real>& base_T_flange,
+                                      Jacobian<Real>& coordinates) {
+  LinkTurn turn[max_joints];
+  Real sag_slope[max_joints][max_joints];
+  FunctionValue function[max_joints];
+  read_links<true>(arm, q, turn, sag_slope, function, nullptr);
+  const std::int32_t joints = arm.joint_count;
+  for (std::int32_t i = 0; i < joints; ++i) append_turn<true>(arm, i, turn[i], base_T_flange, coordinates.column[i]);
+  append_flange(arm, base_T_flange);
+  to_velocities(arm, base_T_flange.position_m, coordinates);
+  add_slopes(arm, sag_slope, function, coordinates);
+  if (joints > curvature_column) return;
+  for (std::int32_t i = 0; i < joints; ++i) {
+    coordinates.column[curvature_column][i] = arm.terms.functions == nullptr ? Real{0} : arm.terms_share * function[i].curvature;
+  }
+}
+
+}  // namespace
+
+void evaluate(const Arm<Real>& arm, const Real* q, Frame<Real>& base_T_flange) noexcept {
+  if (arm.has_terms != 0) {
+    evaluate_terms(arm, q, base_T_flange);
+    return;
+  }
+  for (std::int32_t i = 0; i < arm.joint_count; ++i) append_link<false>(arm, i, q, base_T_flange, nullptr);
+  append_flange(arm, base_T_flange);
+}
+
+std::uint32_t unseen_readings(const Arm<Real>& arm, const Real* q) noexcept {
+  std::uint32_t mask = 0;
+  for (std::uint32_t left = arm.seen_mask, i = 0; left != 0U; left >>= 1U, ++i) {
+    if ((left & 1U) == 0U) continue;
+    Real u;
+    const std::int32_t sector = (sector_of(q[i], u) - arm.seen_first[i]) & (turn_sectors - 1);
+    if (sector >= arm.seen_sectors[i]) mask |= 1U << i;
+  }
+  return mask;
+}
+
+void coordinates_by_terms(const Arm<Real>& arm, const Real* q, Real* added) noexcept {
+  LinkTurn turn[max_joints];
+  read_links<false>(arm, q, turn, nullptr, nullptr, added);
+}
+
+void evaluate(const Arm<Real>& arm, const Real* q, Frame<Real>& base_T_flange, Jacobian<Real>& coordinates) noexcept {
+  if (arm.has_terms != 0) {
+    evaluate_terms(arm, q, base_T_flange, coordinates);
+    return;
+  }
+  evaluate_plain(arm, q, base_T_flange, coordinates);
+}
+
+void evaluate_plain(const Arm<Real>& arm, const Real* q, Frame<Real>& base_T_flange, Jacobian<Real>& coordinates) noexcept {
+  for (std::int32_t i = 0; i < arm.joint_count; ++i) {
+    append_link<true>(arm, i, q, base_T_flange, coordinates.column[i]);
+  }
+  append_flange(arm, base_T_flange);
+  to_velocities(arm, base_T_flange.position_m, coordinates);
 }
 
 void to_readings(const Arm<Real>& arm, Jacobian<Real>& jacobian) noexcept {
@@ -196,10 +379,16 @@ Status forward(const Arm<Real>& arm, const Real* q, Pose<Real>& base_T_flange, J
 
 Status link_frames(const Arm<Real>& arm, const Real* q, Frame<Real>* frames) noexcept {
   if (!readings_valid(arm, q)) return Status::bad_input;
+  LinkTurn turn[max_joints];
+  if (arm.has_terms != 0) {
+    read_links<false>(arm, q, turn, nullptr, nullptr, nullptr);
+  } else {
+    for (std::int32_t i = 0; i < arm.joint_count; ++i) read_link(arm, i, plain_coordinate(arm, i, q), turn[i]);
+  }
   frames[0] = identity;
   for (std::int32_t i = 0; i < arm.joint_count; ++i) {
     frames[i + 1] = frames[i];
-    append_link<false>(arm, i, q, frames[i + 1], nullptr);
+    append_turn<false>(arm, i, turn[i], frames[i + 1], nullptr);
   }
   frames[arm.joint_count + 1] = frames[arm.joint_count];
   append_flange(arm, frames[arm.joint_count + 1]);

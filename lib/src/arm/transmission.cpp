@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "mdhcal/transmission.hpp"
 
+#include "arm/levers.hpp"
 #include "arm/window.hpp"
 #include "mdhcal/arm.hpp"
 #include "number/compare.hpp"
@@ -20,6 +21,8 @@
 #endif
 
 namespace mdhcal {
+
+double max_sag_rad() noexcept { return MDHCAL_MAX_SAG_RAD; }
 
 namespace {
 
@@ -49,6 +52,7 @@ Status judge(const JointFunction& f) {
     const double sine = static_cast<double>(f.sine_rad[k]);
     const double bound = k < f.order_count ? 1.0 : 0.0;
     if (!within_bound(cosine, bound) || !within_bound(sine, bound)) return Status::bad_input;
+    if (k >= f.order_count) continue;
     const double amplitude = root(cosine * cosine + sine * sine);
     amplitudes += amplitude;
     slopes += static_cast<double>(k + 1) * amplitude;
@@ -58,26 +62,6 @@ Status judge(const JointFunction& f) {
 }
 
 bool has_no_function(const JointFunction& f) { return f.order_count == 0; }
-
-// The most that a reading may be.
-double furthest_reading(const Joint& joint) {
-  if (joint.has_min == 0 || joint.has_max == 0) return max_reading;
-  const double low = magnitude(joint.min);
-  const double high = magnitude(joint.max);
-  return low > high ? low : high;
-}
-
-// The longest way from the joint's axis before link `i` to the origin after it.
-double longest_link(const Geometry& geometry, std::int32_t i) {
-  double length = magnitude(geometry.link[i].a_m) + magnitude(geometry.link[i].d_m);
-  if (geometry.joint[i].kind == JointKind::prismatic) {
-    length += furthest_reading(geometry.joint[i]);
-    for (std::int32_t j = 0; j < geometry.joint_count; ++j) {
-      length += magnitude(geometry.joint[i].coupling[j]) * furthest_reading(geometry.joint[j]);
-    }
-  }
-  return length;
-}
 
 Status judge(const Geometry& geometry, const Gravity& gravity) {
   const std::int32_t joints = geometry.joint_count;
@@ -92,21 +76,17 @@ Status judge(const Geometry& geometry, const Gravity& gravity) {
   for (const double p : gravity.payload_com_m) {
     if (!within_bound(p, max_length_m)) return Status::bad_input;
   }
-  double to_flange = 0.0;
-  for (const double p : geometry.last_T_flange.position_m) to_flange += magnitude(p);
   for (std::int32_t i = 0; i < static_cast<std::int32_t>(max_joints); ++i) {
     const bool turns = i < joints && geometry.joint[i].kind == JointKind::revolute;
     const double bound = turns && directed ? max_reading : 0.0;
     if (!within_bound(gravity.payload_compliance[i], bound)) return Status::bad_input;
-    double sag = 0.0, length = 0.0;
+    double sag = 0.0;
     for (std::int32_t j = 0; j < static_cast<std::int32_t>(max_joints); ++j) {
       const double compliance = gravity.compliance[i][j];
       if (!within_bound(compliance, j >= i && j < joints ? bound : 0.0)) return Status::bad_input;
-      if (j < i || j >= joints) continue;
-      length += j + 1 < joints ? longest_link(geometry, j + 1) : to_flange;
-      sag += magnitude(compliance) * length;
+      if (j >= i && j < joints) sag += magnitude(compliance) * longest_lever(geometry, i, j);
     }
-    if (!(sag <= MDHCAL_MAX_SAG_RAD)) return Status::blob_deviation;
+    if (!(sag <= max_sag_rad())) return Status::blob_deviation;
   }
   return Status::ok;
 }

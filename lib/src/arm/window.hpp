@@ -8,6 +8,8 @@ namespace mdhcal {
 namespace {
 
 constexpr double sectors_per_rad = 10.185916357881302;  // 64 / (2 pi)
+/// A window that falls within one sector bends by more than the sector's polynomial follows.
+constexpr std::int32_t least_fade = 2;
 
 /// The readings seen, in whole sectors.
 struct Window {
@@ -28,7 +30,7 @@ inline Window window_of(const JointFunction& f) {
   const std::int32_t first = -floor_of(rounding - f.seen_min_rad * sectors_per_rad);
   const std::int32_t sectors = floor_of(f.seen_max_rad * sectors_per_rad + rounding) - first;
   const std::int32_t gap = turn_sectors - sectors;
-  if (gap < 2) return {first, turn_sectors, 0};
+  if (gap < 2 * least_fade) return {first, turn_sectors, 0};
   return {first, sectors, gap / 2 < fade_sectors ? gap / 2 : fade_sectors};
 }
 

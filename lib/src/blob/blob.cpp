@@ -70,11 +70,15 @@ Status check_reserved(const std::uint8_t* bytes) {
   bool zero = all_zero(bytes + at::model_room, at::model_room_size) &&
               all_zero(bytes + at::last_T_flange + at::pose_reserved, at::pose_size - at::pose_reserved) &&
               all_zero(bytes + at::tracker_T_base + at::pose_reserved, at::pose_size - at::pose_reserved) &&
-              all_zero(bytes + at::joints + joints * at::joint_size, (at::joint_slots - joints) * at::joint_size);
+              all_zero(bytes + at::joints + joints * at::joint_size, (at::joint_slots - joints) * at::joint_size) &&
+              all_zero(bytes + at::functions + joints * at::function_size, (at::joint_slots - joints) * at::function_size) &&
+              all_zero(bytes + at::gravity_reserved, at::payload_compliance - at::gravity_reserved);
   for (std::size_t i = 0; i < joints; ++i) {
     const std::uint8_t* record = bytes + at::joints + i * at::joint_size;
+    const std::uint8_t* function = bytes + at::functions + i * at::function_size;
     zero = zero && all_zero(record + at::joint::reserved, at::joint::reserved_size) &&
            all_zero(record + at::joint::reserved_end, at::joint::reserved_end_size) &&
+           all_zero(function + at::function::reserved, 4) && all_zero(function + at::function::reserved_middle, 8) &&
            (load_u32(record + at::joint::flags) & ~(at::joint_has_min | at::joint_has_max)) == 0U;
   }
   if (own_minor) {
@@ -107,6 +111,7 @@ Status check_absent(const std::uint8_t* bytes) {
   if ((flags & at::flag_calibrated) == 0U) {
     zero = zero && all_zero(bytes + at::measurements_sha256, at::sha256_size) && all_zero(bytes + at::pose_count, 4);
   }
+  if ((flags & at::flag_region) == 0U) zero = zero && all_zero(bytes + at::region, at::region_size);
   if ((flags & at::flag_lambda) == 0U) zero = zero && all_zero(bytes + at::lambda, 8);
   if ((flags & at::flag_held_out) == 0U) {
     zero = zero && all_zero(bytes + at::held_out, 32) && all_zero(bytes + at::held_out_count, 4);
@@ -183,6 +188,17 @@ Status check_values(const std::uint8_t* bytes) {
     const double error_m = load_f64(bytes + at::held_out + 8 * k);
     valid = valid && error_m >= 0.0 && error_m <= max_length_m;
   }
+  for (std::size_t k = 0; k < 3; ++k) {
+    const double low = load_f64(bytes + at::region + 8 * k);
+    const double high = load_f64(bytes + at::region + 24 + 8 * k);
+    valid = valid && within_bound(low, max_length_m) && within_bound(high, max_length_m) && low <= high;
+  }
+  const double least_lean = load_f64(bytes + at::region + 48);
+  const double most_lean = load_f64(bytes + at::region + 56);
+  valid = valid && within_bound(most_lean, max_length_m) && within(0.0, least_lean, most_lean);
+  for (std::size_t i = 0; i < load_u32(bytes + at::joint_count); ++i) {
+    valid = valid && within(0.0, load_f64(bytes + at::joints + i * at::joint_size + at::joint::max_velocity), max_reading);
+  }
   const double lambda = load_f64(bytes + at::lambda);
   valid = valid && lambda >= 0.0 && lambda <= max_lambda;
   const std::size_t joints = load_u32(bytes + at::joint_count);
@@ -217,6 +233,15 @@ Status check_geometry(const std::uint8_t* bytes) {
   return close ? Status::ok : Status::blob_deviation;
 }
 
+Status check_transmission(const std::uint8_t* bytes) {
+  Geometry geometry;
+  Transmission transmission;
+  load_geometry(bytes, geometry);
+  load_transmission(bytes, transmission);
+  const Status status = check_transmission(geometry, transmission);
+  return status == Status::bad_input ? Status::blob_value : status;
+}
+
 bool serial_is(const std::uint8_t* bytes, const char* serial) {
   for (std::size_t i = 0; i < at::serial_size; ++i) {
     if (bytes[at::serial + i] != static_cast<std::uint8_t>(serial[i])) return false;
@@ -235,6 +260,7 @@ Status decode(const std::uint8_t* bytes, std::size_t size, const DecodeOptions& 
   if (status == Status::ok) status = check_absent(bytes);
   if (status == Status::ok) status = check_values(bytes);
   if (status == Status::ok) status = check_geometry(bytes);
+  if (status == Status::ok) status = check_transmission(bytes);
   if (status == Status::ok && options.serial != nullptr && !serial_is(bytes, options.serial)) {
     status = Status::blob_serial;
   }

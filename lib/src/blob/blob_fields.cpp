@@ -45,6 +45,13 @@ void load_provenance(const std::uint8_t* bytes, BlobProvenance& out) {
   out.max_before_m = load_f64(bytes + at::held_out + 8);
   out.mean_after_m = load_f64(bytes + at::held_out + 16);
   out.max_after_m = load_f64(bytes + at::held_out + 24);
+  out.has_region = (flags & at::flag_region) != 0U ? 1 : 0;
+  for (std::size_t k = 0; k < 3; ++k) {
+    out.region_min_m[k] = load_f64(bytes + at::region + 8 * k);
+    out.region_max_m[k] = load_f64(bytes + at::region + 24 + 8 * k);
+  }
+  out.lean_min_m = load_f64(bytes + at::region + 48);
+  out.lean_max_m = load_f64(bytes + at::region + 56);
 }
 
 // How many bytes follow the first one, which is not ASCII, in a well-formed UTF-8 character (RFC 3629: the shortest form, no
@@ -108,8 +115,36 @@ void load_geometry(const std::uint8_t* bytes, Geometry& geometry) noexcept {
   load_pose(bytes + at::last_T_flange, geometry.last_T_flange);
 }
 
+void load_transmission(const std::uint8_t* bytes, Transmission& transmission) noexcept {
+  for (std::size_t i = 0; i < max_joints; ++i) {
+    const std::uint8_t* record = bytes + at::functions + i * at::function_size;
+    JointFunction& f = transmission.function[i];
+    f.order_count = load_i32(record + at::function::order_count);
+    f.reserved = 0;
+    f.seen_min_rad = load_f64(record + at::function::seen_min);
+    f.seen_max_rad = load_f64(record + at::function::seen_max);
+    for (std::size_t k = 0; k < max_orders; ++k) {
+      f.cosine_rad[k] = load_f32(record + at::function::cosine + 4 * k);
+      f.sine_rad[k] = load_f32(record + at::function::sine + 4 * k);
+    }
+  }
+  Gravity& gravity = transmission.gravity;
+  for (std::size_t k = 0; k < 3; ++k) {
+    gravity.direction[k] = load_f64(bytes + at::gravity + 8 * k);
+    gravity.payload_com_m[k] = load_f64(bytes + at::payload_com + 8 * k);
+  }
+  gravity.payload_kg = load_f64(bytes + at::payload);
+  for (std::size_t i = 0; i < max_joints; ++i) {
+    gravity.payload_compliance[i] = load_f64(bytes + at::payload_compliance + 8 * i);
+    for (std::size_t j = 0; j < max_joints; ++j) {
+      gravity.compliance[i][j] = load_f64(bytes + at::compliance + 8 * (max_joints * i + j));
+    }
+  }
+}
+
 void load_model(const std::uint8_t* bytes, BlobContent& model) noexcept {
   load_geometry(bytes, model.geometry);
+  load_transmission(bytes, model.transmission);
   for (std::size_t i = 0; i < max_joints; ++i) model.nominal[i] = load_link(bytes, i, at::joint::nominal);
   memcpy(model.name, bytes + at::name, at::name_size);
   memcpy(model.serial, bytes + at::serial, at::serial_size);
@@ -126,6 +161,9 @@ void load_model(const std::uint8_t* bytes, BlobContent& model) noexcept {
   model.security_counter = load_u32(bytes + at::security_counter);
   model.tolerances = {load_f64(bytes + at::tolerances), load_f64(bytes + at::tolerances + 8),
                       load_f32(bytes + at::float_tolerances), load_f32(bytes + at::float_tolerances + 4)};
+  for (std::size_t i = 0; i < max_joints; ++i) {
+    model.max_velocity[i] = load_f64(bytes + at::joints + i * at::joint_size + at::joint::max_velocity);
+  }
   load_provenance(bytes, model.provenance);
   model.arithmetic_id = load_u32(bytes + at::arithmetic_id);
   model.double_vector_count = load_i32(bytes + at::double_vector_count);

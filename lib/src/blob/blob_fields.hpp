@@ -10,8 +10,8 @@ namespace mdhcal {
 /// Whether `size` bytes are all zero.
 bool all_zero(const std::uint8_t* p, std::size_t size) noexcept;
 
-/// Whether a text field is well-formed: at least one zero byte, zeros only behind the first, no control characters.
-/// UTF-8 is not checked.
+/// Whether a text field is well-formed: at least one zero byte, zeros only behind the first, no control characters,
+/// UTF-8 (RFC 3629).
 bool text_valid(const std::uint8_t* p, std::size_t size) noexcept;
 
 template <class Real>
@@ -28,6 +28,9 @@ Link load_link(const std::uint8_t* bytes, std::size_t joint, std::size_t which) 
 
 /// The corrected geometry, whatever its values. The joint count must be valid.
 void load_geometry(const std::uint8_t* bytes, Geometry& geometry) noexcept;
+
+/// The transmission, whatever its values.
+void load_transmission(const std::uint8_t* bytes, Transmission& transmission) noexcept;
 
 /// The whole model of a blob that has passed every check.
 void load_model(const std::uint8_t* bytes, BlobContent& model) noexcept;

@@ -4,6 +4,7 @@
 #include "mdhcal/environment.hpp"
 #include "mdhcal/self_test.hpp"
 #include "number/compare.hpp"
+#include "number/convert.hpp"
 #include "number/real.hpp"
 
 namespace mdhcal {
@@ -20,25 +21,35 @@ bool same_joints(const Arm<Real>& a, const Arm<Real>& b) {
   return true;
 }
 
-Status make_arms(const Geometry& nominal, const Geometry& corrected, CalibratedArm<Real>& arm) {
+// Both arms; `corrected` refers to `table`, which is not looked at.
+Status make_arms(const Geometry& nominal, const Geometry& corrected, const Transmission& transmission,
+                 const JointFunctionTable& table, Arm<Real>& nominal_arm, Arm<Real>& corrected_arm) {
   Status status = check_environment();
-  if (status == Status::ok) status = make_arm(nominal, arm.nominal);
-  if (status == Status::ok) status = make_arm(corrected, arm.corrected);
+  if (status == Status::ok) status = make_arm(nominal, nominal_arm);
+  if (status == Status::ok) status = make_arm(corrected, transmission, table, corrected_arm);
   if (status != Status::ok) return status;
-  return same_joints(arm.nominal, arm.corrected) ? Status::ok : Status::bad_input;
+  return same_joints(nominal_arm, corrected_arm) ? Status::ok : Status::bad_input;
 }
 
 }  // namespace
 
-Status make_calibrated_arm(const Geometry& nominal, const Geometry& corrected, CalibratedArm<Real>& arm) noexcept {
-  CalibratedArm<Real> made;
-  const Status status = make_arms(nominal, corrected, made);
+Status make_calibrated_arm(const Geometry& nominal, const Geometry& corrected, const Transmission& transmission,
+                           CalibratedArm<Real>& arm) noexcept {
+  Arm<Real> nominal_arm, corrected_arm;
+  const Status status = make_arms(nominal, corrected, transmission, arm.functions, nominal_arm, corrected_arm);
   if (status != Status::ok) return status;
-  made.description = BlobDescription{};
-  made.description.tracker_T_base.quaternion[0] = 1.0;
-  made.description.tolerances = {1e-10, 1e-10, 5e-6F, 5e-6F};
-  arm = made;
+  if (corrected_arm.terms.functions != nullptr) make_table(transmission, arm.functions);
+  arm.nominal = nominal_arm;
+  arm.corrected = corrected_arm;
+  arm.description = BlobDescription{};
+  arm.description.tracker_T_base.quaternion[0] = 1.0;
+  arm.description.tolerances = {1e-10, 1e-10, 5e-6F, 5e-6F};
   return Status::ok;
+}
+
+Status make_calibrated_arm(const Geometry& nominal, const Geometry& corrected, CalibratedArm<Real>& arm) noexcept {
+  const Transmission none{};
+  return make_calibrated_arm(nominal, corrected, none, arm);
 }
 
 Status load(const std::uint8_t* bytes, std::size_t size, const DecodeOptions& demands, CalibratedArm<Real>& arm) noexcept {
@@ -48,12 +59,20 @@ Status load(const std::uint8_t* bytes, std::size_t size, const DecodeOptions& de
   if (status != Status::ok) return status;
   Geometry nominal = content.geometry;
   for (std::size_t i = 0; i < max_joints; ++i) nominal.link[i] = content.nominal[i];
-  CalibratedArm<Real> made;
-  status = make_arms(nominal, content.geometry, made);
-  if (status == Status::ok) status = self_test(content, made.corrected);
+  Arm<Real> nominal_arm, corrected_arm;
+  status = make_arms(nominal, content.geometry, content.transmission, arm.functions, nominal_arm, corrected_arm);
+  if (status != Status::ok) return status;
+  if (corrected_arm.terms.functions != nullptr) {
+    // The table is too large to be made elsewhere first: from here on the arm is no arm until all is well.
+    arm.nominal.mark = 0;
+    arm.corrected.mark = 0;
+    make_table(content.transmission, arm.functions);
+  }
+  status = self_test(content, corrected_arm);
   if (!usable(status)) return status;
-  made.description = content;
-  arm = made;
+  arm.nominal = nominal_arm;
+  arm.corrected = corrected_arm;
+  arm.description = content;
   return status;
 }
 
@@ -70,8 +89,10 @@ TickOptions<Real> default_tick_options(const CalibratedArm<Real>& arm, Real peri
   const Real period = within(Real{0}, period_s, Real(1e3)) ? period_s : Real{0};
   for (std::size_t j = 0; j < max_joints; ++j) {
     const bool slides = ((arm.corrected.prismatic_mask >> j) & 1U) != 0U;
-    options.limits.max_step[j] =
-        period * static_cast<Real>(slides ? default_max_velocity_m_s : default_max_velocity_rad_s);
+    Real stated = 0;
+    convert(arm.description.max_velocity[j], stated);
+    const Real fallback = static_cast<Real>(slides ? default_max_velocity_m_s : default_max_velocity_rad_s);
+    options.limits.max_step[j] = period * (stated > Real{0} ? stated : fallback);
   }
   return options;
 }

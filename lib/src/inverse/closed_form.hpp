@@ -82,7 +82,7 @@ inline void read_screws(const Arm<Real>& arm, Screws& screws) {
   if (arm.mark != arm_mark<Real> || arm.joint_count != 6 || arm.prismatic_mask != 0U) return;
   const Real zero[max_joints] = {};
   Jacobian<Real> jacobian;
-  evaluate(arm, zero, screws.zero, jacobian);
+  evaluate_plain(arm, zero, screws.zero, jacobian);
   const Real* p = screws.zero.position_m;
   for (int i = 0; i < 6; ++i) {
     const Real* column = jacobian.column[i];

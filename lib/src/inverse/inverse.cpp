@@ -118,6 +118,7 @@ Status tick(const Arm<Real>& arm, const TickOptions<Real>& options, const Pose<R
     report->iterations = state.evaluations;
     report->step_mask = state.step_mask;
     report->limit_mask = state.limit_mask | outside;
+    report->unseen_mask = unseen_readings(arm, q);
   }
   return status;
 }

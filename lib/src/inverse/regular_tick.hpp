@@ -104,6 +104,13 @@ inline void rates_of(const TickState& state, const Real* unit, const Real* x, Re
   change[5] = turn.z;
 }
 
+/// What the second derivatives of the joint functions add to that, as a motion of the unknowns but for a slope of some per
+/// cent. Where joints are coupled the unknowns are others, and an evaluation more makes up for it.
+inline void add_curvature(const Arm<Real>& arm, const Jacobian<Real>& coordinates, const Real* a, const Real* b, Real* bend) {
+  if (arm.has_terms == 0 || arm.coupled != 0) return;
+  for (int j = 0; j < 6; ++j) bend[j] += coordinates.column[curvature_column][j] * (a[j] * b[j]);
+}
+
 /// The unknowns' motion for a displacement of the flange, in its place.
 inline void solve_displacement(const Factors& factors, Real per_length, Real* displacement) {
   for (int k = 0; k < 3; ++k) displacement[k] *= per_length;
@@ -164,6 +171,7 @@ inline Real size_of(const PoseError& error, Real per_length) {
     rates_of(state, unit, step, rate);
     change_of_motion(look.coordinates, fresh ? rate : way, rate, bend);
     solve_displacement(factors, per_length, bend);
+    add_curvature(*state.arm, look.coordinates, fresh ? rate : way, rate, bend);
     const Real longest = largest_of(step);
     const Real change = largest_of(bend);
     if (!(longest <= regular_step) || !(change <= regular_change * longest)) return false;

@@ -29,7 +29,8 @@ static_assert(sizeof(mdhcal_description) == sizeof(BlobDescription) && sizeof(md
 static_assert(offsetof(mdhcal_description, target) == offsetof(BlobDescription, target) &&
               offsetof(mdhcal_description, family) == offsetof(BlobDescription, family) &&
               offsetof(mdhcal_description, provenance) == offsetof(BlobDescription, provenance) &&
-              offsetof(mdhcal_provenance, lambda) == offsetof(BlobProvenance, lambda));
+              offsetof(mdhcal_provenance, lambda) == offsetof(BlobProvenance, lambda) &&
+              offsetof(mdhcal_provenance, lean_max_m) == offsetof(BlobProvenance, lean_max_m));
 
 // Whether storage may hold what a C program says: it can make a pointer of any address.
 bool aligned(const void* storage) {
@@ -40,7 +41,10 @@ bool aligned(const void* storage) {
 const CalibratedArm<Real>* arm_in(const C(calibrated_arm)* storage) {
   if (!aligned(storage)) return nullptr;
   const CalibratedArm<Real>* arm = static_cast<const CalibratedArm<Real>*>(static_cast<const void*>(storage));
-  return arm->nominal.mark == arm_mark<Real> && arm->corrected.mark == arm_mark<Real> ? arm : nullptr;
+  if (arm->nominal.mark != arm_mark<Real> || arm->corrected.mark != arm_mark<Real>) return nullptr;
+  // A copy of the bytes refers to the joint functions of what it was copied from.
+  const JointFunctionTable* functions = arm->corrected.terms.functions;
+  return functions == nullptr || functions == &arm->functions ? arm : nullptr;
 }
 
 const Compensator<Real>* compensator_in(const C(compensator)* storage) {
@@ -110,6 +114,7 @@ std::int32_t finish(Status status, const TickReport<Real>& report, C(tick_report
     out->iterations = report.iterations;
     out->step_mask = report.step_mask;
     out->limit_mask = report.limit_mask;
+    out->unseen_mask = report.unseen_mask;
   }
   return number(status);
 }
@@ -250,6 +255,17 @@ std::int32_t C(start_frame_ramp)(C(compensator)* compensator, const C(pose)* bas
   Compensator<Real>* c = compensator_in(compensator);
   if (c == nullptr || base_T_user == nullptr || flange_T_tool == nullptr) return refused;
   return number(start_frame_ramp(*c, {from_c(*base_T_user), from_c(*flange_T_tool)}, ticks));
+}
+
+std::int32_t C(start_payload_ramp)(C(compensator)* compensator, Real payload_kg, std::uint32_t ticks) {
+  Compensator<Real>* c = compensator_in(compensator);
+  return c == nullptr ? refused : number(start_payload_ramp(*c, payload_kg, ticks));
+}
+
+std::int32_t C(refers_to)(const C(compensator)* compensator, const C(calibrated_arm)* arm) {
+  const Compensator<Real>* c = compensator_in(compensator);
+  const CalibratedArm<Real>* a = arm_in(arm);
+  return c != nullptr && a != nullptr && refers_to(*c, *a) ? 1 : 0;
 }
 
 std::int32_t C(advance_ramp)(C(compensator)* compensator) {

@@ -2,6 +2,8 @@
 // The ramp of a compensator: parameters as offsets from a goal that fade.
 #include "mdhcal/compensator.hpp"
 
+#include <cstring>
+
 #include "number/real.hpp"
 
 #include "arm/chain.hpp"
@@ -57,6 +59,7 @@ void each(const Parameters& a, const Parameters& b, Parameters& c, F f) {
     f(a.max[i], b.max[i], c.max[i]);
   }
   f(a.reach_m, b.reach_m, c.reach_m);
+  f(a.payload_kg, b.payload_kg, c.payload_kg);
   for (int p = 0; p < 3; ++p) {
     for (int k = 0; k < 4; ++k) f(a.pose[p].quaternion[k], b.pose[p].quaternion[k], c.pose[p].quaternion[k]);
     for (int k = 0; k < 3; ++k) f(a.pose[p].position_m[k], b.pose[p].position_m[k], c.pose[p].position_m[k]);
@@ -67,6 +70,31 @@ void offset_and_rate(const Compensator<Real>& c, Parameters& offset, Parameters&
   const Weights w = weights_of(c);
   each(c.offset, c.rate, offset, [&](Real o, Real r, Real& now) { now = w.offset * o + w.rate * r; });
   each(c.offset, c.rate, rate, [&](Real o, Real r, Real& now) { now = w.offset_slope * o + w.rate_slope * r; });
+}
+
+// The share of the terms, whose they are, and how fast it goes [1/tick].
+struct Share {
+  Real value, slope;
+  bool before;
+};
+
+Share share_of(const Compensator<Real>& c) {
+  const Real goal = c.goal_arm.terms_share;
+  if (c.ticks_done >= c.ticks_total) return {goal, Real{0}, false};
+  const TermsRamp<Real>& terms = c.terms;
+  if (c.ticks_done >= terms.ticks) {
+    const Real total = static_cast<Real>(c.ticks_total - terms.ticks);
+    const Real s = static_cast<Real>(c.ticks_done - terms.ticks) / total;
+    return {goal - goal * fall(s), -goal * fall_slope(s) / total, false};
+  }
+  const Real end = terms.ticks == c.ticks_total ? goal : Real{0};
+  const Real total = static_cast<Real>(terms.ticks);
+  const Real s = static_cast<Real>(c.ticks_done) / total;
+  const Real fading = static_cast<Real>(c.ticks_fading < terms.ticks ? c.ticks_fading : terms.ticks);
+  const Real f = static_cast<Real>(c.ticks_done) < fading ? static_cast<Real>(c.ticks_done) / fading : Real{1};
+  const Real offset = terms.share - end;
+  const Real value = end + offset * fall(s) + terms.rate * fading * drift(f);
+  return {value, offset * fall_slope(s) / total + (f < Real{1} ? terms.rate * drift_slope(f) : Real{0}), true};
 }
 
 Real difference(Real sine_a, Real cosine_a, Real sine_b, Real cosine_b) {
@@ -100,6 +128,7 @@ void between(const Arm<Real>& from, const Frames<Real>& from_frames, const Arm<R
     if ((from.max_mask & to.max_mask & bit) != 0U) offset.max[i] = from.max[i] - to.max[i];
   }
   offset.reach_m = from.reach_m - to.reach_m;
+  offset.payload_kg = from.payload_kg - to.payload_kg;
   Pose<Real> a[3], b[3];
   poses_of(from, from_frames, a);
   poses_of(to, to_frames, b);
@@ -142,6 +171,19 @@ void motion_of(const Pose<Real>& goal, const Pose<Real>& offset, const Pose<Real
   motion[5] = scale * ((d[3] * p[0] - d[0] * p[3]) + (d[2] * p[1] - d[1] * p[2]));
 }
 
+// How the joint coordinates go with share [1/tick] and payload [kg/tick]: they are linear in both.
+void motion_of_terms(const Arm<Real>& arm, const Real* q, Real share_slope, Real payload_slope, Real* rate) {
+  Arm<Real> whole = arm;
+  Real terms[max_joints], heavier[max_joints];
+  whole.terms_share = 1;
+  coordinates_by_terms(whole, q, terms);
+  whole.payload_kg += Real{1};
+  coordinates_by_terms(whole, q, heavier);
+  for (std::int32_t i = 0; i < arm.joint_count; ++i) {
+    rate[i] = share_slope * terms[i] + arm.terms_share * payload_slope * (heavier[i] - terms[i]);
+  }
+}
+
 void turn(Real angle, Real& sine, Real& cosine) {
   Real s = 0, c = 1;
   sin_cos(angle, s, c);
@@ -174,6 +216,11 @@ void place(Compensator<Real>& c) {
       c.arm.max[i] += offset.max[i];
     }
     c.arm.reach_m += offset.reach_m;
+    c.arm.payload_kg += offset.payload_kg;
+    const Share share = share_of(c);
+    if (share.before) c.arm.terms = c.terms.before;
+    c.arm.terms_share = share.value;
+    c.arm.has_terms = magnitude(share.value) > Real{0} ? 1 : 0;
     Pose<Real> pose[3];
     poses_of(c.goal_arm, c.goal_frames, pose);
     to_frame(moved(pose[0], offset.pose[0]), c.arm.last_T_flange);
@@ -190,7 +237,30 @@ void place(Compensator<Real>& c) {
   for (const Real p : tool.position_m) c.arm.reach_m += magnitude(p);
 }
 
+bool same_terms(const ArmTerms<Real>& a, const ArmTerms<Real>& b) {
+  return a.functions == b.functions && std::memcmp(a.compliance, b.compliance, sizeof a.compliance) == 0 &&
+         std::memcmp(a.across, b.across, sizeof a.across) == 0 &&
+         std::memcmp(a.payload_compliance, b.payload_compliance, sizeof a.payload_compliance) == 0 &&
+         std::memcmp(a.payload_p_m, b.payload_p_m, sizeof a.payload_p_m) == 0 &&
+         std::memcmp(a.flange_p_m, b.flange_p_m, sizeof a.flange_p_m) == 0 && !(a.payload_kg < b.payload_kg) &&
+         !(a.payload_kg > b.payload_kg);
+}
+
+// Where the terms are, as a ramp begins that leads to `goal`.
+void begin_terms(Compensator<Real>& c, const Arm<Real>& goal, std::uint32_t ticks) {
+  TermsRamp<Real>& terms = c.terms;
+  const Share share = share_of(c);
+  terms.has_before = c.arm.has_terms;
+  terms.ticks = 0;
+  if (terms.has_before == 0) return;
+  terms.before = c.arm.terms;
+  terms.share = share.value;
+  terms.rate = share.slope;
+  terms.ticks = goal.has_terms == 0 || same_terms(c.arm.terms, goal.terms) ? ticks : ticks / 2U;
+}
+
 void begin(Compensator<Real>& c, const Arm<Real>& arm, const Frames<Real>& frames, std::uint32_t ticks) {
+  begin_terms(c, arm, ticks);
   Parameters moved_by{}, offset{}, rate{};
   const std::uint32_t left = ramp_ticks_left(c);
   if (left > 0U) {
@@ -275,7 +345,23 @@ Status start_ramp(Compensator<Real>& compensator, const CalibratedArm<Real>& arm
   if (!valid(compensator) || !made(arm, model) || !same_joints(arm.corrected, compensator.goal_arm)) {
     return Status::bad_input;
   }
-  begin(compensator, model == Model::corrected ? arm.corrected : arm.nominal, compensator.goal_frames, ticks);
+  Arm<Real> goal = model == Model::corrected ? arm.corrected : arm.nominal;
+  // A payload that the new model may not carry, or knows nothing of, leaves it with the calibration's.
+  if (compensator.has_payload != 0 && set_payload(goal, compensator.payload_kg) != Status::ok) goal.payload_kg = goal.terms.payload_kg;
+  // What has no terms knows of no payload: there it stays what it is, or becomes at once what it will be.
+  if (goal.has_terms == 0) goal.payload_kg = compensator.goal_arm.payload_kg;
+  if (compensator.arm.has_terms == 0) compensator.goal_arm.payload_kg = goal.payload_kg;
+  begin(compensator, goal, compensator.goal_frames, ticks);
+  return Status::ok;
+}
+
+Status start_payload_ramp(Compensator<Real>& compensator, Real payload_kg, std::uint32_t ticks) noexcept {
+  if (!valid(compensator)) return Status::bad_input;
+  Arm<Real> goal = compensator.goal_arm;
+  if (set_payload(goal, payload_kg) != Status::ok) return Status::bad_input;
+  compensator.payload_kg = payload_kg;
+  compensator.has_payload = 1;
+  begin(compensator, goal, compensator.goal_frames, ticks);
   return Status::ok;
 }
 
@@ -331,6 +417,17 @@ Status ramp_motion(const Compensator<Real>& compensator, const Real* q, Real* mo
     add(x, frames[i], rate.link[i][0], rate.link[i][1]);
     add(z, frames[i + 1], rate.link[i][2], rate.link[i][3]);
     add(y, frames[i + 1], rate.link[i][4], Real{0});
+  }
+  if (arm.has_terms != 0) {
+    Real moved_by[max_joints];
+    motion_of_terms(arm, q, share_of(compensator).slope, rate.payload_kg, moved_by);
+    for (std::int32_t i = 0; i < arm.joint_count; ++i) {
+      const ArmLink<Real>& link = arm.link[i];
+      const Real* after = frames[i + 1].rotation;
+      Real z[3];
+      for (int k = 0; k < 3; ++k) z[k] = link.cos_beta * after[3 * k + 2] - link.sin_beta * after[3 * k];
+      add(z, frames[i + 1], moved_by[i], Real{0});
+    }
   }
   // Flange and tool move in the frames before them; the flange's own frame is the tool's with the tool taken off.
   Pose<Real> goal[3];

@@ -21,7 +21,7 @@ const char* status_text(Status status) noexcept {
     case Status::blob_serial: return "made for another robot";
     case Status::blob_value: return "a value is not finite or out of range";
     case Status::blob_reserved: return "a reserved byte is not zero";
-    case Status::blob_deviation: return "geometry deviates too far from nominal";
+    case Status::blob_deviation: return "calibration deviates too far from nominal";
     case Status::blob_unsigned: return "not signed";
     case Status::blob_signature: return "signature does not verify";
     case Status::blob_counter: return "security counter is too low";

@@ -343,6 +343,10 @@ class Compensator:
         self._arms.append(arm)
         self.arm = arm
 
+    def start_payload_ramp(self, payload_kg: float, ticks: int) -> None:
+        """Goes to another payload in so many ticks. Raises Refused where the calibration does not know what it does."""
+        _check("payload", _lib.mdhcal_start_payload_ramp(self._storage, payload_kg, ticks))
+
     def start_frame_ramp(self, base_T_user: npt.ArrayLike, flange_T_tool: npt.ArrayLike, ticks: int) -> None:
         """Goes to other frames [7], [7] in so many ticks."""
         user, tool = _rows(base_T_user, 7, "base_T_user"), _rows(flange_T_tool, 7, "flange_T_tool")

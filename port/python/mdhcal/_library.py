@@ -5,9 +5,9 @@ import os
 import pathlib
 from ctypes import POINTER, Structure, c_char, c_char_p, c_double, c_float, c_int32, c_size_t, c_uint8, c_uint32, c_void_p
 
-ABI_VERSION = 2  # MDHCAL_ABI_VERSION of the header that this file repeats
+ABI_VERSION = 3  # MDHCAL_ABI_VERSION of the header that this file repeats
 MAX_JOINTS, MAX_SOLUTIONS, MAX_TARGETS = 8, 16, 8
-BLOB_BYTES = 4096
+BLOB_BYTES = 8160
 
 VERIFY = ctypes.CFUNCTYPE(c_int32, POINTER(c_uint8), c_size_t, POINTER(c_uint8), c_void_p)
 
@@ -25,7 +25,8 @@ class Provenance(Structure):
                 ("measurements_sha256", c_uint8 * 32), ("pose_count", c_uint32), ("held_out_count", c_uint32),
                 ("has_measurements", c_int32), ("has_lambda", c_int32), ("has_held_out", c_int32), ("lambda_", c_double),
                 ("mean_before_m", c_double), ("max_before_m", c_double), ("mean_after_m", c_double),
-                ("max_after_m", c_double)]
+                ("max_after_m", c_double), ("has_region", c_int32), ("region_min_m", c_double * 3),
+                ("region_max_m", c_double * 3), ("lean_min_m", c_double), ("lean_max_m", c_double)]
 
 
 class Tolerances(Structure):
@@ -37,7 +38,7 @@ class Description(Structure):
     _fields_ = [("name", c_char * 64), ("serial", c_char * 32), ("has_base", c_int32), ("target_count", c_int32),
                 ("tracker_T_base_quaternion", c_double * 4), ("tracker_T_base_position_m", c_double * 3),
                 ("target", Target * MAX_TARGETS), ("family", c_int32), ("security_counter", c_uint32),
-                ("tolerances", Tolerances), ("provenance", Provenance)]
+                ("tolerances", Tolerances), ("max_velocity", c_double * MAX_JOINTS), ("provenance", Provenance)]
 
 
 class Joint(Structure):
@@ -56,7 +57,7 @@ class TickOptions(Structure):
 
 class TickReport(Structure):
     _fields_ = [("position_error_m", c_double), ("rotation_error_rad", c_double), ("smallest_singular_value", c_double),
-                ("iterations", c_int32), ("step_mask", c_uint32), ("limit_mask", c_uint32)]
+                ("iterations", c_int32), ("step_mask", c_uint32), ("limit_mask", c_uint32), ("unseen_mask", c_uint32)]
 
 
 def find() -> pathlib.Path:
@@ -92,6 +93,8 @@ def load() -> ctypes.CDLL:
         "mdhcal_start_at_rest": (c_int32, [address, count, address, c_int32]),
         "mdhcal_start_ramp": (c_int32, [address, address, c_int32, c_uint32]),
         "mdhcal_start_frame_ramp": (c_int32, [address, address, address, c_uint32]),
+        "mdhcal_start_payload_ramp": (c_int32, [address, c_double, c_uint32]),
+        "mdhcal_refers_to": (c_int32, [address, address]),
         "mdhcal_ramp_ticks_left": (c_uint32, [address]),
         "mdhcal_forward_rows": (None, [address, c_int32, count] + [address] * 4),
         "mdhcal_link_frames_rows": (None, [address, c_int32, count] + [address] * 3),

@@ -262,7 +262,7 @@ class Firmware(unittest.TestCase):
     def test_an_update_that_stops_or_is_damaged_keeps_the_active_model(self):
         board = self.start(self.flash("first"), "--serial", "SN-0001")
         board.wait_for("swap: done")
-        board.send(b"MDHU" + struct.pack("<I", 4096) + self.blob["second"][:2048])
+        board.send(b"MDHU" + struct.pack("<I", 8160) + self.blob["second"][:2048])
         board.wait_for("update: abandoned after 2048 bytes")
         board.send(b"MDHU" + struct.pack("<I", 12))
         board.wait_for("update: refused, wrong size")

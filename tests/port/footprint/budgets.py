@@ -30,7 +30,9 @@ BUDGETS = [
     # user's own. It was 64 KiB before the C header had frames, ramps between any two models, and accelerations.
     Budget("cortex-m7", "everything in double", ("everything in double",), "code and constants", 81920, "bytes"),
     Budget("cortex-m7", "everything in float", ("everything in float",), "code and constants", 81920, "bytes"),
-    Budget("cortex-m7", "decoding a blob", ("decode", "-", None), "max", 60000, "instructions"),
+    # Of 8160 bytes; of 4096 it was 60 000.
+    Budget("cortex-m7", "decoding a blob", ("decode", "-", None), "max", 120000, "instructions"),
+    Budget("cortex-m7", "forward, every term in use", ("forward+terms", "double", None), "max", 2600, "instructions"),
     Budget("cortex-m4f", "forward, float", ("forward", "float", None), "max", 1600, "instructions"),
     Budget("cortex-m4f", "warm tick, float, median", ("tick", "float", "regular"), "median", 8000, "instructions"),
 ]

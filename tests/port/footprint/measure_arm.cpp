@@ -11,6 +11,8 @@ namespace {
 using namespace mdhcal;
 
 Geometry geometry;
+Transmission transmission;
+JointFunctionTable table;
 
 template <class Real>
 void measure_preparation() {
@@ -32,8 +34,15 @@ void measure_preparation() {
   measure("family_of", precision, "arms", count, another, [] { found = family_of(S::arm); });
 }
 
+// What is measured on the arm without terms and on the one with all of them.
+struct Names {
+  const char *forward, *with_jacobian, *link_frames, *tick;
+};
+constexpr Names plain{"forward", "forward+jacobian", "link_frames", "tick"};
+constexpr Names all_terms{"forward+terms", "forward+jacobian+terms", "link_frames+terms", "tick+terms"};
+
 template <class Real>
-void measure_kinematics() {
+void measure_kinematics(const Names& names) {
   using S = State<Real>;
   static Jacobian<Real> jacobian;
   static Frame<Real> frames[max_joints + 2];
@@ -45,17 +54,17 @@ void measure_kinematics() {
       joints(set, i, random, q_rad);
       S::set_joints(q_rad);
     };
-    measure("forward", precision, name_of(set), input_count, prepare, [] { S::status = forward(S::arm, S::q, S::pose); });
-    measure("forward+jacobian", precision, name_of(set), input_count, prepare,
+    measure(names.forward, precision, name_of(set), input_count, prepare, [] { S::status = forward(S::arm, S::q, S::pose); });
+    measure(names.with_jacobian, precision, name_of(set), input_count, prepare,
             [] { S::status = forward(S::arm, S::q, S::pose, jacobian); });
-    measure("link_frames", precision, name_of(set), input_count, prepare,
+    measure(names.link_frames, precision, name_of(set), input_count, prepare,
             [] { S::status = link_frames(S::arm, S::q, frames); });
   }
 }
 
 // One tick at 1 kHz: targets up to 3 mrad a joint away, or anywhere.
 template <class Real>
-void measure_tick() {
+void measure_tick(const Names& names) {
   using S = State<Real>;
   static TickReport<Real> report;
   const auto call = [] { S::status = tick(S::arm, S::options, S::pose, S::q, &report); };
@@ -71,7 +80,7 @@ void measure_tick() {
       S::status = forward(S::arm, S::q, S::pose);
       S::set_joints(q_rad);
     };
-    measure("tick", precision_name<Real>, name_of(set), tick_count<Real>, prepare, call);
+    measure(names.tick, precision_name<Real>, name_of(set), tick_count<Real>, prepare, call);
   }
   const auto far = [&](int i) {
     joints(Set::mixed, i, random, q_rad);
@@ -81,7 +90,7 @@ void measure_tick() {
     joints(i % 3 == 0 ? Set::regular : Set::near_singular, i, random, q_rad);
     S::set_joints(q_rad);
   };
-  measure("tick", precision_name<Real>, "far", tick_count<Real>, far, call);
+  measure(names.tick, precision_name<Real>, "far", tick_count<Real>, far, call);
   // Straight away from the base until out of reach, and back, 0.3 mm a tick; every fortieth is measured.
   constexpr int excursion = 100, skipped = 40;
   static Pose<Real> home;
@@ -104,7 +113,7 @@ void measure_tick() {
       if (k + 1 < skipped) call();
     }
   };
-  measure("tick", precision_name<Real>, "border", tick_count<Real>, along_border, call);
+  measure(names.tick, precision_name<Real>, "border", tick_count<Real>, along_border, call);
 }
 
 }  // namespace
@@ -118,10 +127,20 @@ void measure_arm() {
   geometry = calibrated_arm();
   State<double>::status = make_arm(geometry, State<double>::arm);
   State<float>::status = make_arm(geometry, State<float>::arm);
-  measure_kinematics<double>();
-  measure_kinematics<float>();
-  measure_tick<double>();
-  measure_tick<float>();
+  measure_kinematics<double>(plain);
+  measure_kinematics<float>(plain);
+  measure_tick<double>(plain);
+  measure_tick<float>(plain);
+  every_term(transmission);
+  make_table(transmission, table);
+  State<double>::status = make_arm(geometry, transmission, table, State<double>::arm);
+  State<float>::status = make_arm(geometry, transmission, table, State<float>::arm);
+  State<double>::status = set_payload(State<double>::arm, 3.0);
+  State<float>::status = set_payload(State<float>::arm, 3.0F);
+  measure_kinematics<double>(all_terms);
+  measure_kinematics<float>(all_terms);
+  measure_tick<double>(all_terms);
+  measure_tick<float>(all_terms);
 }
 
 }  // namespace footprint

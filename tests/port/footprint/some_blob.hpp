@@ -53,6 +53,8 @@ inline void some_blob(std::uint64_t seed, bool with_vectors, std::uint8_t (&blob
     put(nominal.link[i], at + blob_layout::joint::nominal);
     put(corrected.link[i], at + blob_layout::joint::corrected);
   }
+  // Without the golden one's terms: its vectors are of the geometry.
+  std::memset(blob + blob_layout::functions, 0, blob_layout::region - blob_layout::functions);
   Random random(seed);
   for (std::size_t i = 0; with_vectors && i < 2; ++i) {
     double q_rad[6];

@@ -17,7 +17,7 @@ static double *q, *results, *seeds;
 static mdhcal_pose* poses;
 static mdhcal_tick_report* reports;
 static int32_t* statuses;
-static uint8_t bytes[4096];
+static uint8_t bytes[8160];
 
 static void forward_only(void) {
   size_t row;

@@ -20,7 +20,7 @@ from mdhcal import _library
 
 GOLDEN = ROOT / "tests/blob/golden"
 BLOB = max(GOLDEN.glob("written-arithmetic-*.blob"), key=lambda path: int(path.name.split("-")[2]))
-CORRECTED = GOLDEN / "six-joints-1.0.blob"  # of which nominal and corrected geometry differ
+CORRECTED = GOLDEN / "six-joints-2.0.blob"  # of which nominal and corrected geometry differ
 
 
 def readings(arm, rows, seed, spread=1.0):
