@@ -29,10 +29,9 @@ std::string calibrate_one(const BatchEntry& entry, const fs::path& folder, const
   Dataset test;
   if (!entry.test.empty()) test = read_dataset(entry.test, robot, options.rotation);
   OutputFolder out(folder, result_names);
-  Calibration calibration = calibrate(robot, data, options.calibration, entry.test.empty() ? nullptr : &test);
+  Calibration calibration = concluded(calibrate(robot, data, options.calibration, entry.test.empty() ? nullptr : &test));
   Assessment assessment;
   assessment.diagnosis = explain_by_mistakes({robot, data, options.calibration}, false, calibration);
-  calibration = concluded(std::move(calibration));
   write_result(out, calibration, options.date, options.report, assessment);
   out.commit();
   std::string reasons;

@@ -87,9 +87,9 @@ void run_calibrate(const CalibrateArguments& arguments) {
   Dataset test;
   if (!arguments.test.empty()) test = read_dataset(arguments.test, robot, arguments.rotation);
   OutputFolder folder(arguments.directory, result_names);
-  Calibration c = calibrated(robot, data, options, arguments.test.empty() ? nullptr : &test);
+  // What the blob cannot hold is a reason too, and the search looks for the mistake behind it.
+  Calibration c = concluded(calibrated(robot, data, options, arguments.test.empty() ? nullptr : &test));
   const std::optional<Diagnosis> diagnosis = searched(robot, data, options, arguments.diagnose, c);
-  c = concluded(std::move(c));
   Assessment assessment = assess(arguments, options, robot, data, c);
   assessment.diagnosis = diagnosis;
   write_result(folder, c, date, true, assessment);

@@ -16,6 +16,8 @@
 #include "offline/cli/commands.hpp"
 #include "offline/cli/messages.hpp"
 #include "offline/cli/rotation_option.hpp"
+#include "offline/identify/folds.hpp"
+#include "offline/identify/judging.hpp"
 #include "offline/output/blob_file.hpp"
 
 namespace mdhcal::offline {
@@ -61,14 +63,20 @@ void run_verify(const VerifyArguments& arguments) {
   }
   const Registration r = registration(robot, data, arguments.refit_base, arguments.refit_tool);
   std::vector<double> all;
+  std::vector<std::size_t> rows;
   std::vector<std::vector<double>> by_target(data.targets.size());
-  for (const Measurement& row : data.rows) {
+  for (std::size_t i = 0; i < data.rows.size(); ++i) {
+    const Measurement& row = data.rows[i];
     if (const auto error = error_mm(blob.arm, r, data, row)) {
       all.push_back(*error);
+      rows.push_back(i);
       by_target[row.target].push_back(*error);
     }
   }
   const Statistics total = statistics(all);
+  const std::vector<std::uint32_t> pose = poses_of(data, rows);
+  const std::size_t poses = pose.empty() ? 0 : *std::max_element(pose.begin(), pose.end()) + std::size_t{1};
+  const Bounds mean = bounds_of_mean(all, pose);
   const Statistics rotations = statistics(rotation_errors_deg(blob.arm, r, data));
 
   std::string broken;
@@ -86,6 +94,9 @@ void run_verify(const VerifyArguments& arguments) {
 
   if (arguments.json) {
     nlohmann::ordered_json json = figures_json(total);
+    json["poses"] = poses;
+    if (std::isfinite(mean.high)) json["mean_95_mm"] = {mean.low, mean.high};
+    else json["mean_95_mm"] = nullptr;
     if (rotations.count > 0) {
       json["rotation_count"] = rotations.count;
       json["rotation_mean_deg"] = rotations.mean;
@@ -108,6 +119,7 @@ void run_verify(const VerifyArguments& arguments) {
     for (std::size_t k = 0; data.targets.size() > 1 && k < by_target.size(); ++k) {
       print_line("target " + data.targets[k], statistics(by_target[k]));
     }
+    if (std::isfinite(mean.high)) std::printf("95 %% bounds of the mean over %zu poses: %.4f to %.4f mm\n", poses, mean.low, mean.high);
   }
   if (!arguments.json && rotations.count > 0) {
     std::printf("rotations of %zu full poses: mean %.4f, maximum %.4f degrees\n", rotations.count, rotations.mean, rotations.max);

@@ -20,6 +20,7 @@
 #include "offline/identify/regularized.hpp"
 #include "offline/identify/rotation_check.hpp"
 #include "offline/identify/rotation_noise.hpp"
+#include "offline/identify/shared_error.hpp"
 #include "offline/identify/spectrum.hpp"
 #include "offline/identify/unknowns.hpp"
 #include "offline/identify/usable.hpp"
@@ -143,10 +144,8 @@ void figure_rotations(Calibration& out) {
   }
   out.train_rotation = rotation_figures(out.start, out.estimate, out.training, out.training_rows);
   if (!tested.empty()) out.test_rotation = rotation_figures(out.start, out.estimate, out.testing, tested);
-  for (const auto& [figures, on] : {std::pair{out.train_rotation, "training"}, std::pair{out.test_rotation, "held-out"}}) {
-    const std::string sentence = rotation_sentence(figures, on);
-    if (!sentence.empty()) out.notes.push_back(sentence);
-  }
+  const std::string sentence = rotation_sentence(out.train_rotation, "training");
+  if (!sentence.empty()) out.notes.push_back(sentence);
 }
 
 void note_dependences(Calibration& out) {
@@ -167,7 +166,7 @@ void compare_rules(const Linearised& at, LambdaReport& report) {
     report.choices.push_back({rule, lambda, std::sqrt(problem.residual_norm2(lambda)), std::sqrt(problem.solution_norm2(lambda))});
   };
   if (report.lambda > 0.0) add(report.rule + " (chosen)", report.lambda);
-  for (const LambdaChoice& choice : {marginal_likelihood(problem, at.independent_share), generalised_cross_validation(problem),
+  for (const LambdaChoice& choice : {marginal_likelihood(problem), generalised_cross_validation(problem),
                                      l_curve(problem), quasi_optimality(problem)}) {
     if (choice.rule == report.rule) continue;
     if (choice.found && choice.lambda > 0.0) add(choice.rule, choice.lambda);
@@ -247,11 +246,15 @@ void identify(Work& work, Calibration& out) {
   const Dataset& data = out.training;
   const UnknownsOptions unknowns_asked = unknowns_options(work.options);
   out.noise_mm = unknowns_asked.noise_mm;
+  check_poses(data, out.training_rows, choose_unknowns(work.robot, data, out.training_rows, unknowns_asked).layout);
+  out.contradiction = why_rotations_contradict(work.robot, data, out.training_rows, unknowns_asked);
+  if (!out.contradiction.empty()) {
+    leave_out_rotations(out.training);
+    leave_out_rotations(out.testing);
+  }
   work.unknowns = choose_unknowns(work.robot, data, out.training_rows, unknowns_asked);
   out.layout = work.unknowns.layout;
   out.decisions = work.unknowns.parameters.decisions;
-  check_poses(work.robot, data, out.training_rows, work.unknowns);
-  check_rotations(work.robot, data, out.training_rows, unknowns_asked);
 
   work.selection.rows = out.training_rows;
   const Fit nominal = fit_frames(work.unknowns, data, work.selection, out.noise_mm);
@@ -292,10 +295,18 @@ void identify(Work& work, Calibration& out) {
     result.fit.estimate = outcome.estimate;
     evaluate(MeasurementModel(outcome.estimate), data, work.selection, out.noise_mm, &result.fit.error_norms);
     result.fit.scale = robust_scale(result.fit.error_norms, 1.0, any_sigma ? 1.0 : out.noise_mm);
+    set_shared_error(data, out.layout, outcome.estimate, out.noise_mm, work.selection);
     result.linearised = linearised(data, work.selection, out.layout, outcome.estimate, out.noise_mm);
   }
   out.estimate = result.fit.estimate;
   out.robust_weight = work.selection.robust_weight;
+  out.shared = work.selection.shared;
+  out.independent_share = independent_share(data, work.selection);
+  if (work.selection.shared.any()) {
+    out.notes.push_back("Rows of one pose share " + number(100.0 * (1.0 - work.selection.shared.own()), 0) +
+                        " % of the variance of their errors: for what they share " + std::to_string(out.training_rows.size()) +
+                        " rows inform like " + number(out.independent_share * static_cast<double>(out.training_rows.size())) + ".");
+  }
   out.scale_mm = result.fit.scale * out.residual_unit_mm;
   out.outlier_threshold_mm = outlier_error_norm(out.scale_mm);
   out.corrected = corrected_robot(work.robot, out.estimate, out.layout, data);
@@ -310,7 +321,7 @@ void tell_parameters(const Work& work, Calibration& out) {
   out.identifiability.before =
       spectrum_of(linearised(data, work.selection, out.layout, out.start, out.noise_mm).system);
   out.covariance = covariance_of(data, work.selection, out.layout, at.system, at.problem, work.regularized.fit,
-                                 out.lambda.lambda, independent_share_of_poses(data, work.selection, model), out.noise_mm);
+                                 out.lambda.lambda, out.noise_mm);
   const std::size_t frames = out.layout.frame_columns();
   for (std::size_t i = 0; i < out.layout.geometry.size(); ++i) {
     const Parameter& parameter = out.layout.geometry[i];

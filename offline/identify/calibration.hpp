@@ -11,7 +11,7 @@
 
 #include "offline/base/statistics.hpp"
 #include "offline/identify/identifiability.hpp"
-#include "offline/identify/model.hpp"
+#include "offline/identify/reduction.hpp"
 #include "offline/identify/rotation_figures.hpp"
 #include "offline/identify/uncertainty.hpp"
 
@@ -84,6 +84,7 @@ struct SplitFigures {
 struct CrossValidation {
   std::size_t folds = 0;
   SplitFigures figures;
+  RotationFigures rotation;       ///< of the rows that are full poses
   /// Median, over the rows, of the error over the error predicted for it (noise and the parameters' covariance in that
   /// fold); 1 if the model holds all that moves. Never below 1.
   double misfit = 1;
@@ -149,6 +150,8 @@ struct Calibration {
   double noise_mm = 0.02;         ///< the noise that was assumed where no sigma is stated
   double residual_unit_mm = 1;    ///< what a scaled residual of 1 stands for: with sigma the rows' mean sigma, else 1 mm
   double scale_mm = 0;            ///< of one axis's residual
+  SharedError shared;             ///< of the rows of one pose
+  double independent_share = 1;   ///< of the training rows, for what is shared (shared_error.hpp)
   double outlier_threshold_mm = 0;///< error norm of a training row's position beyond which it is an outlier
   PredictedAccuracy accuracy;
   std::vector<ZeroOffset> zeros;  ///< what --rezero moved
@@ -156,6 +159,7 @@ struct Calibration {
   std::vector<std::string> decisions;  ///< what was decided about the unknowns
   std::vector<std::string> notes;      ///< what the reader has to know
   std::vector<std::string> details;    ///< each weak or lost combination of parameters, of which a note names the worst
+  std::string contradiction;           ///< why the rotations were left out (rotation_check.hpp); empty: they were not
   std::vector<std::string> reasons;    ///< why the result must not be used; empty: it may
   std::string accepted;                ///< why it is used all the same (--accept)
   std::string verdict;                 ///< a few sentences
@@ -174,6 +178,10 @@ struct Calibration {
   bool released() const { return usable() || !accepted.empty(); }
   /// The rows that the verdict rests on: held out, else left out of folds, else (a method without folds) the training's.
   const SplitFigures& judged() const { return test ? *test : cross_validation ? cross_validation->figures : train; }
+  /// Of the same rows, those that are full poses.
+  const RotationFigures& judged_rotation() const {
+    return test ? test_rotation : cross_validation ? cross_validation->rotation : train_rotation;
+  }
 };
 
 }  // namespace mdhcal::offline

@@ -23,14 +23,20 @@ double squared_norm(double error_norm, std::size_t count) {
   return norm * norm;
 }
 
-Noise noise_of(const Dataset& data, const Selection& selection, const Fit& fit, double parameters,
-               double independent_share, double floor) {
+// Squared length of the rows' last column behind a triangle: the weighted, whitened residuals.
+double whitened_squares(const ReducedSystem& system) {
+  return system.frame_residual.squaredNorm() + system.geometry_residual.squaredNorm() + system.outside2;
+}
+
+Noise noise_of(const Dataset& data, const Selection& selection, const ReducedSystem& system, const Fit& fit, double parameters,
+               double floor) {
   // psi(r) = w(|r|) r: its variance over its mean slope squared is the estimate's variance in units of (J^T J)^-1;
   // times the mean weight, in units of (J^T W J)^-1, which is what the triangle holds.
   double scalars = 0;
   double weight = 0;
   double slope = 0;
   double psi2 = 0;
+  double squares = 0;
   for (std::size_t i = 0; i < selection.rows.size(); ++i) {
     const auto count = residual_count(data.rows[selection.rows[i]].kind);
     const auto n = static_cast<double>(count);
@@ -42,18 +48,21 @@ Noise noise_of(const Dataset& data, const Selection& selection, const Fit& fit, 
     weight += n * w;
     slope += n * w + dw;
     psi2 += w * w * squared_norm(fit.error_norms[i], count);
+    squares += w * squared_norm(fit.error_norms[i], count);
   }
   Noise out;
-  out.freedom = independent_share * scalars - parameters;
+  // What rows share is taken out of the triangle: its residuals count, not the rows'.
+  if (selection.shared.any() && squares > 0.0) psi2 *= whitened_squares(system) / squares;
+  out.freedom = scalars - parameters;
   if (!(out.freedom >= 1.0) || !(slope > 0.0)) {
     out.freedom = std::max(1.0, out.freedom);
-    out.variance = floor * floor / independent_share;
+    out.variance = floor * floor;
     return out;
   }
   const double one = psi2 / scalars * (weight / scalars) / ((slope / scalars) * (slope / scalars));
   out.variance = one * scalars / out.freedom;
   // With hardly any freedom left the residuals say nothing about the noise: then the stated noise is the least.
-  if (out.freedom < 10.0) out.variance = std::max(out.variance, floor * floor / independent_share);
+  if (out.freedom < 10.0) out.variance = std::max(out.variance, floor * floor);
   return out;
 }
 
@@ -61,24 +70,24 @@ Noise noise_of(const Dataset& data, const Selection& selection, const Fit& fit, 
 
 Covariance covariance_of(const Dataset& data, const Selection& selection, const Layout& layout,
                          const ReducedSystem& system, const SpectralProblem& problem, const Fit& fit, double lambda,
-                         double independent_share, double noise_mm) {
+                         double noise_mm) {
   Covariance out;
   out.size = layout.columns();
   const auto frames = static_cast<Eigen::Index>(layout.frame_columns());
   const auto n = static_cast<Eigen::Index>(layout.geometry.size());
   const double floor = states_sigma(data) ? 1.0 : noise_mm;
   const double used = static_cast<double>(system.frame_rank) + problem.effective_parameters(lambda);
-  const Noise noise = noise_of(data, selection, fit, used, independent_share, floor);
-  out.sigma = std::sqrt(noise.variance * independent_share);
+  const Noise noise = noise_of(data, selection, system, fit, used, floor);
+  out.sigma = std::sqrt(noise.variance);
   out.freedom = noise.freedom;
   out.coverage_factor = student_975(std::max(3.0, noise.freedom));
-  const double ratio = marginal_likelihood(problem, independent_share).lambda;
+  const double ratio = marginal_likelihood(problem).lambda;
   if (problem.rank() > 0 && ratio > 0.0) {
     // Two estimates of the prior's variance: the noise over the ratio with the greatest likelihood, and the deviations
     // found, since a deviation's expected square is that variance times its filter factor. They agree where the data tell
     // the ratio; where hardly anything is left of the residual the first one has no bound.
     const double found = problem.solution_norm2(lambda) / std::max(1.0, problem.effective_parameters(lambda));
-    out.prior_scale = std::sqrt(std::max(1.0, std::min(noise.variance * independent_share / ratio, found)));
+    out.prior_scale = std::sqrt(std::max(1.0, std::min(noise.variance / ratio, found)));
   }
 
   const double t2 = out.prior_scale * out.prior_scale;

@@ -75,13 +75,6 @@ Dependence regress(const Calibration& c, Sample sample, Eigen::Index effects, do
   return out;
 }
 
-double share_of(const Calibration& c) {
-  Selection selection;
-  selection.rows = c.training_rows;
-  selection.robust_weight = c.robust_weight;
-  return independent_share(c.training, selection, MeasurementModel(c.estimate));
-}
-
 void mean_residual(const Calibration& c, const std::function<bool(std::size_t)>& counts, Dependence& out) {
   out.count = 0;
   for (const RowResult& r : c.rows) {
@@ -98,7 +91,7 @@ Dependence temperature_dependence(const Calibration& c) {
   const auto temperature = [&](std::size_t row) { return c.training.temperature[row]; };
   const Frame<double>& base = c.estimate.tracker_T_base;
   const Vector3 foot{base.position_m[0], base.position_m[1], base.position_m[2]};
-  Dependence out = regress(c, sample_of(c, temperature), 4, share_of(c), [&](std::size_t row) {
+  Dependence out = regress(c, sample_of(c, temperature), 4, c.independent_share, [&](std::size_t row) {
     Eigen::MatrixXd columns = Eigen::MatrixXd::Zero(3, 4);
     columns.leftCols(3).setIdentity();
     const Vector3 reach = minus(c.training.rows[row].position_m, foot);
@@ -125,7 +118,7 @@ std::vector<Dependence> direction_dependences(const Calibration& c) {
     turns.geometry.push_back(turn);
   }
   const MeasurementModel model(c.estimate);
-  const double share = share_of(c);
+  const double share = c.independent_share;
   std::vector<Dependence> out;
   for (const std::string& word : words) {
     const auto stands = [&](std::size_t row) { return c.training.direction[row] == word ? 1.0 : 0.0; };

@@ -4,10 +4,17 @@
 #include <cmath>
 
 #include "offline/base/error.hpp"
+#include "offline/identify/shared_error.hpp"
 
 namespace mdhcal::offline {
 
 namespace {
+
+// Rounding alone must not count as an increase: sums of squares over 1e5 rows round by some 1e-11.
+constexpr double not_above = 1.0 + 1e-9;
+// Levenberg-Marquardt damping of unit columns: the first shortens directions below a hundredth of the largest, the least
+// none that a well-told problem has.
+constexpr double first_damping = 1e-4, least_damping = 1e-6;
 
 // Weighted squares at a trial estimate; infinite where the geometry is no longer valid.
 double trial_squares(const Estimate& estimate, const Dataset& data, const Selection& selection, double noise_mm,
@@ -57,6 +64,7 @@ Fit fit(const Dataset& data, Selection& selection, const Layout& layout, const E
   out.scale = robust_scale(out.error_norms, 1.0, floor);
   selection.robust_weight = robust_weights(control.loss, out.error_norms, out.scale);
 
+  const double share = independent_share(data, selection);
   double damping = 0.0;
   double parameters_used = 0.0;
   for (out.iterations = 0; out.iterations < control.max_iterations; ++out.iterations) {
@@ -85,15 +93,14 @@ Fit fit(const Dataset& data, Selection& selection, const Layout& layout, const E
       trial = moved(out.estimate, layout, step.data());
       trial_objective = trial_squares(trial, data, selection, control.noise_mm, norms) +
                         penalty(trial, layout, out.lambda);
-      // Rounding alone must not count as an increase.
-      if (trial_objective <= objective * (1.0 + 1e-9)) break;
-      damping = damping > 0.0 ? 10.0 * damping : 1e-4;
+      if (trial_objective <= objective * not_above) break;
+      damping = damping > 0.0 ? 10.0 * damping : first_damping;
     }
-    if (!(trial_objective <= objective * (1.0 + 1e-9))) return out;
-    damping = damping > 1e-6 ? 0.1 * damping : 0.0;
+    if (!(trial_objective <= objective * not_above)) return out;
+    damping = damping > least_damping ? 0.1 * damping : 0.0;
     out.estimate = trial;
     out.error_norms = norms;
-    const double scalars = control.independent_share * scalars_used(data, selection);
+    const double scalars = share * scalars_used(data, selection);
     out.scale = robust_scale(out.error_norms, freedom_factor(scalars, parameters_used), floor);
     selection.robust_weight = robust_weights(control.loss, out.error_norms, out.scale);
     if (step.size() == 0 || step.cwiseAbs().maxCoeff() < control.tolerance) {

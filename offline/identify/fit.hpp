@@ -14,7 +14,6 @@ struct FitControl {
   double noise_mm = 0.02;
   /// Negative: lambda follows the residual's scale squared, the maximum a posteriori choice for honest priors.
   double lambda = -1.0;
-  double independent_share = 1.0;  ///< of the rows, see folds.hpp: repeats do not add degrees of freedom
   int max_iterations = 50;
   double tolerance = 1e-4;  ///< largest step at which the fit has converged, in columns' units (0.1 um, 0.1 urad)
 };

@@ -95,64 +95,6 @@ double FoldJudge::error_mm(double lambda) const {
   return count > 0 ? sum / static_cast<double>(count) : HUGE_VAL;
 }
 
-namespace {
-
-double share(const Dataset& data, const Selection& selection, const MeasurementModel& model, bool by_target) {
-  struct Cell {
-    std::size_t count = 0;
-    double sum[3] = {0, 0, 0};
-    double squares = 0;
-  };
-  const std::vector<std::uint32_t> pose = poses_of(data, selection.rows);
-  std::map<std::pair<std::uint32_t, std::uint32_t>, Cell> cells;
-  for (std::size_t i = 0; i < selection.rows.size(); ++i) {
-    const Measurement& m = data.rows[selection.rows[i]];
-    if (m.kind == MeasurementKind::distance) continue;
-    if (!selection.robust_weight.empty() && selection.robust_weight[i] < outlier_weight) continue;
-    double r[max_row_residuals];
-    model.residual(data, selection.rows[i], r);
-    Cell& cell = cells[{pose[i], by_target ? m.target : 0U}];
-    ++cell.count;
-    for (std::size_t k = 0; k < 3; ++k) {
-      cell.sum[k] += r[k];
-      cell.squares += r[k] * r[k];
-    }
-  }
-  double rows = 0;
-  double repeated = 0;  // cells with repeats
-  double repeats = 0;   // rows in those
-  double within = 0;    // squares about the cell's mean
-  double between = 0;   // squares of the cells' means
-  for (const auto& [key, cell] : cells) {
-    rows += static_cast<double>(cell.count);
-    if (cell.count < 2) continue;
-    const auto n = static_cast<double>(cell.count);
-    const double mean2 =
-        (cell.sum[0] * cell.sum[0] + cell.sum[1] * cell.sum[1] + cell.sum[2] * cell.sum[2]) / (n * n);
-    repeated += 1;
-    repeats += n;
-    within += std::max(0.0, cell.squares - n * mean2);
-    between += mean2;
-  }
-  if (!(repeats > repeated)) return 1.0;
-  const double n = repeats / repeated;
-  const double scatter = within / (repeats - repeated);
-  const double shared = std::max(0.0, between / repeated - scatter / n);
-  if (!(shared + scatter > 0.0)) return 1.0;
-  const double effect = 1.0 + (n - 1.0) * shared / (shared + scatter);
-  return (rows - repeats + repeats / effect) / rows;
-}
-
-}  // namespace
-
-double independent_share(const Dataset& data, const Selection& selection, const MeasurementModel& model) {
-  return share(data, selection, model, true);
-}
-
-double independent_share_of_poses(const Dataset& data, const Selection& selection, const MeasurementModel& model) {
-  return share(data, selection, model, false);
-}
-
 double training_error_mm(const Dataset& data, const Selection& selection, const Layout& layout, const Estimate& at,
                          const Linearised& whole, double lambda) {
   double sum = 0.0;

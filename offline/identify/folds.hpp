@@ -41,15 +41,6 @@ class FoldJudge {
   std::vector<WithoutFold> rest_;
 };
 
-/// How much of the rows counts as independent, in (0, 1]: repeats of one configuration (rows of one pose and target)
-/// share the errors that the model does not hold, so n repeats inform like n / (1 + (n - 1) r), r being the correlation
-/// of their residuals. 1 without repeats. (the design effect, Kish 1965)
-double independent_share(const Dataset& data, const Selection& selection, const MeasurementModel& model);
-
-/// The same of the rows of one pose, its reflectors too. For intervals: they count what rows share. The choice of lambda does
-/// not, because reflectors of one pose tell the flange's rotation by their differences, which no shared error touches.
-double independent_share_of_poses(const Dataset& data, const Selection& selection, const MeasurementModel& model);
-
 /// The error with the training rows themselves as the judge, as in the source.
 double training_error_mm(const Dataset& data, const Selection& selection, const Layout& layout, const Estimate& at,
                          const Linearised& whole, double lambda);

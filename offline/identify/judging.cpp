@@ -9,6 +9,7 @@
 #include "offline/identify/named_rows.hpp"
 #include "offline/identify/robust.hpp"
 #include "offline/robot/random_readings.hpp"
+#include "offline/robot/units.hpp"
 #include "offline/robot/vectors.hpp"
 
 namespace mdhcal::offline {
@@ -163,11 +164,18 @@ CrossValidation judge_left_out(const LeftOut& left_out, const Calibration& c) {
   out.misfit = robust_scale(standardised, 1.0, 1.0);
   const std::vector<std::uint32_t> pose = poses_of(c.training, c.training_rows);
   std::vector<JudgedRow> judged;
+  std::vector<double> turned_before;
+  std::vector<double> turned_after;
   for (std::size_t i = 0; i < c.training_rows.size(); ++i) {
     const Prediction& p = left_out.after[i];
+    if (c.training.rows[c.training_rows[i]].kind == MeasurementKind::pose) {
+      turned_before.push_back(deg_per_rad * norm(left_out.before_turn_mm[i]) / c.training.rotation_lever_mm);
+      turned_after.push_back(deg_per_rad * norm(p.turn_mm) / c.training.rotation_lever_mm);
+    }
     judged.push_back({row_name(c.training, c.training.rows[c.training_rows[i]]), norm(left_out.before_mm[i]), norm(p.error_mm),
                       out.misfit * p.mean_mm, pose[i], p.standardised > outlier_threshold * out.misfit});
   }
+  out.rotation = {statistics(turned_before), statistics(turned_after)};
   if (gross_only(judged, c)) count_as_the_worst_other(judged);
   out.figures = figures_of(judged);
   // Folds share most of their rows, so their errors are not independent: for k folds the variance of the mean is

@@ -149,21 +149,22 @@ LambdaChoice generalised_cross_validation(const SpectralProblem& problem) {
   });
 }
 
-LambdaChoice marginal_likelihood(const SpectralProblem& problem, double independent_share) {
+double marginal_deviance(const SpectralProblem& problem, double lambda) {
+  double squares = problem.outside2;
+  double volume = 0.0;
+  for (Eigen::Index i = 0; i < problem.rank(); ++i) {
+    const double sum = problem.s(i) * problem.s(i) + lambda;
+    squares += problem.beta(i) * problem.beta(i) * lambda / sum;
+    volume += std::log(sum / lambda);
+  }
+  return static_cast<double>(problem.data_count) * std::log(squares) + volume;
+}
+
+LambdaChoice marginal_likelihood(const SpectralProblem& problem) {
   // Its criterion grows without bound as lambda falls, so it needs no lower bound against round-off, and where all
   // directions are well told the usual bound would already shrink the weakest by a tenth.
   constexpr double widening = 1e-8;
-  const auto criterion = [&](double lambda) {
-    double squares = problem.outside2;
-    double volume = 0.0;
-    for (Eigen::Index i = 0; i < problem.rank(); ++i) {
-      const double sum = problem.s(i) * problem.s(i) + lambda;
-      squares += problem.beta(i) * problem.beta(i) * lambda / sum;
-      volume += std::log(sum / lambda);
-    }
-    return independent_share * static_cast<double>(problem.data_count) * std::log(squares) + volume;
-  };
-  return global_minimum(problem, "reml", criterion, widening);
+  return global_minimum(problem, "reml", [&](double lambda) { return marginal_deviance(problem, lambda); }, widening);
 }
 
 LambdaChoice quasi_optimality(const SpectralProblem& problem) {

@@ -44,8 +44,11 @@ LambdaChoice discrepancy(const SpectralProblem& problem, double sigma);
 
 /// Greatest marginal likelihood of the data when noise and deviations are both normal, their variances unknown but for
 /// the ratio lambda that is sought (restricted maximum likelihood: base and targets projected out; Patterson and
-/// Thompson 1971). `independent_share`: of the rows, see independent_share() in folds.hpp.
-LambdaChoice marginal_likelihood(const SpectralProblem& problem, double independent_share);
+/// Thompson 1971).
+LambdaChoice marginal_likelihood(const SpectralProblem& problem);
+
+/// Its criterion: twice the negative logarithm of that likelihood for a lambda, but for a constant.
+double marginal_deviance(const SpectralProblem& problem, double lambda);
 
 /// Minimum of |lambda dx/dlambda|. (Tikhonov and Glasko 1965)
 LambdaChoice quasi_optimality(const SpectralProblem& problem);

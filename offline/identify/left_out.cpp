@@ -13,8 +13,11 @@ namespace {
 
 Selection without(const Selection& selection, std::uint32_t fold) {
   Selection rest;
+  rest.shared = selection.shared;
   for (std::size_t i = 0; i < selection.rows.size(); ++i) {
-    if (selection.fold[i] != fold || selection.folds == 1) rest.rows.push_back(selection.rows[i]);
+    if (selection.fold[i] == fold && selection.folds > 1) continue;
+    rest.rows.push_back(selection.rows[i]);
+    if (!selection.pose.empty()) rest.pose.push_back(selection.pose[i]);
   }
   return rest;
 }
@@ -30,12 +33,11 @@ FoldFit fit_without(const Dataset& data, Selection rest, const Layout& layout, c
   FitControl stage;
   stage.noise_mm = control.noise_mm;
   stage.loss = control.robust ? Loss::tukey : Loss::squares;
-  stage.independent_share = whole.independent_share;
   stage.lambda = result.lambda;
   // What is left of the error is far above a hundredth of a prior's standard deviation.
   stage.tolerance = 1e-2;
   if (control.choose_lambda && part.problem.rank() > 0) {
-    const LambdaChoice choice = marginal_likelihood(part.problem, whole.independent_share);
+    const LambdaChoice choice = marginal_likelihood(part.problem);
     if (choice.found) stage.lambda = choice.lambda;
   }
   FoldFit out;
@@ -46,8 +48,7 @@ FoldFit fit_without(const Dataset& data, Selection rest, const Layout& layout, c
     // The linear solution left the valid range of a geometry: from the result itself.
     out.fit = fit(data, rest, layout, result.estimate, stage);
   }
-  out.covariance = covariance_of(data, rest, layout, part.system, part.problem, out.fit, stage.lambda, whole.independent_share,
-                                 control.noise_mm);
+  out.covariance = covariance_of(data, rest, layout, part.system, part.problem, out.fit, stage.lambda, control.noise_mm);
   return out;
 }
 
@@ -59,6 +60,7 @@ LeftOut leave_out(const Dataset& data, const Selection& selection, const Unknown
   out.folds = selection.folds;
   out.after.resize(selection.rows.size());
   out.before_mm.resize(selection.rows.size());
+  out.before_turn_mm.resize(selection.rows.size());
   const bool any_sigma = states_sigma(data);
   for (std::uint32_t fold = 0; fold < selection.folds; ++fold) {
     Selection rest = without(selection, fold);
@@ -77,6 +79,7 @@ LeftOut leave_out(const Dataset& data, const Selection& selection, const Unknown
       double residual[max_row_residuals] = {};
       const std::size_t count = before.residual(data, row, residual);
       for (std::size_t k = 0; k < std::min<std::size_t>(count, 3); ++k) out.before_mm[i][k] = residual[k];
+      for (std::size_t k = 3; k < count; ++k) out.before_turn_mm[i][k - 3] = residual[k];
       out.after[i] = predict(predictor, data, row);
     }
   }

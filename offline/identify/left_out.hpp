@@ -12,6 +12,7 @@ struct LeftOut {
   std::size_t folds = 0;
   std::vector<Prediction> after;    ///< one a selected row
   std::vector<Vector3> before_mm;   ///< likewise: the nominal geometry, base and targets fitted without the row's pose
+  std::vector<Vector3> before_turn_mm;  ///< and its Prediction::turn_mm
 };
 
 struct LeaveOutControl {

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "offline/identify/linearised.hpp"
 
-#include "offline/identify/folds.hpp"
-
 namespace mdhcal::offline {
 
 Triangle sum_of(const std::vector<Triangle>& parts) {
@@ -22,7 +20,6 @@ Linearised linearised(const Dataset& data, const Selection& selection, const Lay
   const std::vector<double> x = deviation(at, layout);
   out.x0 = Eigen::Map<const Eigen::VectorXd>(x.data(), static_cast<Eigen::Index>(x.size()));
   out.problem = penalised_problem(out.system, out.x0);
-  out.independent_share = independent_share(data, selection, model);
   return out;
 }
 

@@ -14,7 +14,6 @@ struct Linearised {
   ReducedSystem system;           ///< of all parts together
   SpectralProblem problem;        ///< base and targets projected out, in the total deviation
   Eigen::VectorXd x0;             ///< the deviation at which it was linearised, in units of the prior
-  double independent_share = 1;   ///< of the rows, see independent_share() in folds.hpp
 };
 
 /// Linearises the selected rows, with their robust weights, at `at`.

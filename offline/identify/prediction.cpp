@@ -38,6 +38,7 @@ Prediction predict(const Predictor& predictor, const Dataset& data, std::size_t 
     trace += covariance(static_cast<Eigen::Index>(k), static_cast<Eigen::Index>(k));
   }
   const Eigen::Map<const Eigen::VectorXd> r(residual, rows);
+  if (count == max_row_residuals) out.turn_mm = {residual[3], residual[4], residual[5]};
   out.standardised = covariance.llt().matrixL().solve(r).norm() / chi_median(count);
   // Mean norm of normal errors of one variance on every axis: one axis sqrt(2 / pi) sd, three sqrt(8 / pi) sd (Maxwell).
   const double axes = static_cast<double>(leading);

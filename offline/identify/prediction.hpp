@@ -19,6 +19,7 @@ struct Predictor {
 
 struct Prediction {
   Vector3 error_mm{};     ///< predicted minus measured; a distance's in the first component
+  Vector3 turn_mm{};      ///< of a full pose: the rotation vector of predicted * measured^-1, times the dataset's lever
   /// Norm of the residual over the covariance that is predicted for this very row (the parameters' at its joints, and the
   /// scale of the fit's residual on each axis), divided by the median that the norm of as many standard normal numbers
   /// has: 1 in half of the rows if the prediction is right.

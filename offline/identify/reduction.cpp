@@ -3,6 +3,8 @@
 
 #include <cmath>
 
+#include "offline/identify/shared_error.hpp"
+
 namespace mdhcal::offline {
 
 namespace {
@@ -107,6 +109,40 @@ double standard_error_norm(const double* scaled_residual, std::size_t count) {
   return std::sqrt(sum) / chi_median(count);
 }
 
+namespace {
+
+constexpr std::size_t position_axes = 3;
+
+// The rows of one pose, axis by axis: scaled residuals in the last column, and before it their Jacobian if `layout` is given.
+std::array<Eigen::MatrixXd, position_axes> rows_of_pose(const MeasurementModel& model, const Dataset& data, const Selection& selection,
+                                                         const Layout* layout, double noise_mm, bool any_sigma, const PoseBlock& block) {
+  const std::size_t n = layout != nullptr ? layout->columns() : 0;
+  std::array<Eigen::MatrixXd, position_axes> out;
+  for (Eigen::MatrixXd& axis : out) axis.resize(static_cast<Eigen::Index>(block.selected.size()), static_cast<Eigen::Index>(n) + 1);
+  std::vector<double> jacobian(max_row_residuals * n);
+  for (std::size_t i = 0; i < block.selected.size(); ++i) {
+    const std::size_t row = selection.rows[block.selected[i]];
+    double residual[max_row_residuals];
+    double scale[max_row_residuals];
+    if (layout != nullptr) model.residual(data, row, *layout, residual, jacobian.data(), n);
+    else model.residual(data, row, residual);
+    residual_scale(data, row, noise_mm, any_sigma, scale);
+    for (std::size_t k = 0; k < position_axes; ++k) {
+      auto line = out[k].row(static_cast<Eigen::Index>(i));
+      for (std::size_t c = 0; c < n; ++c) line(static_cast<Eigen::Index>(c)) = scale[k] * jacobian[k * n + c];
+      line(static_cast<Eigen::Index>(n)) = scale[k] * residual[k];
+    }
+  }
+  return out;
+}
+
+// Where a row's own entries begin that no pose shares: rotations of a full pose; all of a distance.
+std::size_t first_unshared(const Selection& selection, const Measurement& m) {
+  return selection.shared.any() && m.kind != MeasurementKind::distance ? position_axes : 0;
+}
+
+}  // namespace
+
 std::vector<Triangle> linearise(const MeasurementModel& model, const Dataset& data, const Selection& selection,
                                 const Layout& layout, double noise_mm, std::vector<double>* error_norms) {
   const std::size_t n = layout.columns();
@@ -122,11 +158,23 @@ std::vector<Triangle> linearise(const MeasurementModel& model, const Dataset& da
     residual_scale(data, row, noise_mm, any_sigma, scale);
     const double root = selection.robust_weight.empty() ? 1.0 : std::sqrt(selection.robust_weight[i]);
     Triangle& triangle = triangles[selection.fold.empty() ? 0 : selection.fold[i]];
-    for (std::size_t k = 0; k < count; ++k) {
+    for (std::size_t k = first_unshared(selection, data.rows[row]); k < count; ++k) {
       triangle.add_row(jacobian.data() + k * n, residual[k], scale[k] * root);
-      residual[k] *= scale[k];
     }
+    for (std::size_t k = 0; k < count; ++k) residual[k] *= scale[k];
     if (error_norms != nullptr) (*error_norms)[i] = standard_error_norm(residual, count);
+  }
+  if (!selection.shared.any()) return triangles;
+  std::vector<double> line(n);
+  for (const PoseBlock& block : pose_blocks(data, selection)) {
+    Triangle& triangle = triangles[selection.fold.empty() ? 0 : selection.fold[block.selected.front()]];
+    for (Eigen::MatrixXd& axis : rows_of_pose(model, data, selection, &layout, noise_mm, any_sigma, block)) {
+      whiten(selection.shared, block, selection.robust_weight, axis);
+      for (Eigen::Index i = 0; i < axis.rows(); ++i) {
+        for (std::size_t c = 0; c < n; ++c) line[c] = axis(i, static_cast<Eigen::Index>(c));
+        triangle.add_row(line.data(), axis(i, axis.cols() - 1), 1.0);
+      }
+    }
   }
   return triangles;
 }
@@ -143,11 +191,16 @@ double evaluate(const MeasurementModel& model, const Dataset& data, const Select
     const std::size_t count = model.residual(data, row, residual);
     residual_scale(data, row, noise_mm, any_sigma, scale);
     const double weight = selection.robust_weight.empty() ? 1.0 : selection.robust_weight[i];
-    for (std::size_t k = 0; k < count; ++k) {
-      residual[k] *= scale[k];
-      sum += weight * residual[k] * residual[k];
-    }
+    for (std::size_t k = 0; k < count; ++k) residual[k] *= scale[k];
+    for (std::size_t k = first_unshared(selection, data.rows[row]); k < count; ++k) sum += weight * residual[k] * residual[k];
     if (error_norms != nullptr) (*error_norms)[i] = standard_error_norm(residual, count);
+  }
+  if (!selection.shared.any()) return sum;
+  for (const PoseBlock& block : pose_blocks(data, selection)) {
+    for (Eigen::MatrixXd& axis : rows_of_pose(model, data, selection, nullptr, noise_mm, any_sigma, block)) {
+      whiten(selection.shared, block, selection.robust_weight, axis);
+      sum += axis.squaredNorm();
+    }
   }
   return sum;
 }

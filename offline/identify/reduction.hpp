@@ -37,12 +37,24 @@ class Triangle {
   std::size_t row_count_ = 0;
 };
 
+/// What the rows of one pose have in common: their position errors are the sum of one error of the pose, one of the pose and
+/// target, and one of the row, each with the same variance on every axis. Shares of the variance of one row, in all below 1.
+struct SharedError {
+  double by_pose = 0;     ///< the arm's error there that the model does not hold
+  double by_target = 0;   ///< what repeats of one target share besides
+
+  double own() const { return 1.0 - by_pose - by_target; }
+  bool any() const { return by_pose > 0.0 || by_target > 0.0; }
+};
+
 /// The rows of a dataset that take part in a fit, their folds and their weights.
 struct Selection {
   std::vector<std::size_t> rows;         ///< indices into Dataset::rows
   std::vector<std::uint32_t> fold;       ///< one a selected row; empty: one fold
   std::uint32_t folds = 1;
   std::vector<double> robust_weight;     ///< one a selected row, 0 ... 1; empty: all 1
+  std::vector<std::uint32_t> pose;       ///< one a selected row; empty: each row is its own pose
+  SharedError shared;                    ///< of the rows of one pose
 };
 
 /// Scale of each scalar residual of a row: 1 / sigma where the file states sigma (per axis), else 1 if no row of the
@@ -60,12 +72,13 @@ double chi_median(std::size_t count);
 /// standard normal numbers has, so that rows of all kinds compare, and its median over good rows is one axis's sigma.
 double standard_error_norm(const double* scaled_residual, std::size_t count);
 
-/// Linearises at the model: one triangle a fold, of rows scaled by residual_scale() and the root of the robust weight.
+/// Linearises at the model: one triangle a fold, of rows scaled by residual_scale() and the root of the robust weight. Rows
+/// that share errors are whitened together (whiten() in shared_error.hpp); no pose may lie in two folds.
 /// `error_norms`, if not null, receives standard_error_norm() of each selected row.
 std::vector<Triangle> linearise(const MeasurementModel& model, const Dataset& data, const Selection& selection,
                                 const Layout& layout, double noise_mm, std::vector<double>* error_norms = nullptr);
 
-/// Only the residuals: standard_error_norm() of each selected row; returns the weighted sum of squares.
+/// Only the residuals: standard_error_norm() of each selected row; returns the weighted sum of squares, whitened likewise.
 double evaluate(const MeasurementModel& model, const Dataset& data, const Selection& selection, double noise_mm,
                 std::vector<double>* error_norms = nullptr);
 

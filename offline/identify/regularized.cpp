@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "offline/base/error.hpp"
+#include "offline/identify/shared_error.hpp"
 
 namespace mdhcal::offline {
 
@@ -23,7 +24,7 @@ LambdaChoice choose_lambda(const Dataset& data, const Selection& selection, cons
           problem, [&](double lambda) { return training_error_mm(data, selection, layout, at, whole, lambda); }, "rpim-train");
     case LambdaRule::l_curve: return l_curve(problem);
     case LambdaRule::gcv: return generalised_cross_validation(problem);
-    case LambdaRule::marginal_likelihood: return marginal_likelihood(problem, whole.independent_share);
+    case LambdaRule::marginal_likelihood: return marginal_likelihood(problem);
     case LambdaRule::quasi_optimality: return quasi_optimality(problem);
     case LambdaRule::discrepancy: {
       if (!control.sigma) {
@@ -77,7 +78,7 @@ LambdaChoice followed(const Dataset& data, const Selection& selection, const Lay
   const std::string reason = without_judge ? why_not(choice, problem) : "";
   if (!reason.empty() && problem.rank() > 0) {
     const std::string rule = choice.rule;
-    choice = marginal_likelihood(problem, now.linearised.independent_share);
+    choice = marginal_likelihood(problem);
     choice.note = "The rule " + rule + " is not followed: " + reason + ". Lambda is that of the default rule, reml.";
   }
   if (!choice.found) {
@@ -101,7 +102,7 @@ RegularizedFit regularized_fit(const Dataset& data, Selection& selection, const 
   stage.loss = control.robust ? Loss::huber : Loss::squares;
   stage.tolerance = 0.05;  // only a start for the next stage
   out.fit = fit(data, selection, layout, start, stage);
-  stage.independent_share = independent_share(data, selection, MeasurementModel(out.fit.estimate));
+  set_shared_error(data, layout, out.fit.estimate, control.noise_mm, selection);
   stage.loss = control.robust ? Loss::tukey : Loss::squares;
   stage.tolerance = 1e-2;
   out.fit = fit(data, selection, layout, out.fit.estimate, stage);

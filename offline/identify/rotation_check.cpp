@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "mdhcal/kinematics.hpp"
 #include "offline/base/error.hpp"
@@ -43,8 +44,9 @@ std::vector<Turn> turns_of(const Dataset& data, const std::vector<std::size_t>& 
   return out;
 }
 
-// Median angle between predicted and stated rotation, as `data` has it. `given` holds the probes' turns; where it is empty
-// they are fitted.
+// Mean angle between predicted and stated rotation, as `data` has it. `given` holds the probes' turns; where it is empty
+// they are fitted. The mean, not the median: where most poses hold the flange alike, any convention fits those once the probe's
+// turn is fitted, and the few that turn it are the witnesses.
 double misfit(const Dataset& data, const std::vector<Turn>& turns, const std::vector<Frame<double>>& given = {}) {
   std::vector<Frame<double>> flange_R_measured;
   std::vector<std::size_t> target;
@@ -63,8 +65,7 @@ double misfit(const Dataset& data, const std::vector<Turn>& turns, const std::ve
     const Frame<double> probe = given.empty() ? mean_rotation(own) : given[t];
     for (const Frame<double>& each : own) angles.push_back(norm(log_of_rotation(compose(inverted(probe), each))));
   }
-  std::nth_element(angles.begin(), angles.begin() + static_cast<std::ptrdiff_t>(angles.size() / 2), angles.end());
-  return angles[angles.size() / 2];
+  return std::accumulate(angles.begin(), angles.end(), 0.0) / static_cast<double>(angles.size());
 }
 
 bool same_convention(const RotationConvention& a, const RotationConvention& b) {
@@ -141,51 +142,77 @@ std::string reading_of(const RotationFit& fit) {
   return text + " (--rotation " + fit.convention.name + ")";
 }
 
-void check_rotations(const Robot& robot, const Dataset& data, const std::vector<std::size_t>& rows,
-                     const UnknownsOptions& options) {
-  constexpr std::ptrdiff_t enough = 6;
-  const auto is_pose = [&](std::size_t row) { return data.rows[row].kind == MeasurementKind::pose; };
-  if (std::count_if(rows.begin(), rows.end(), is_pose) < enough) return;
-  Dataset positions = data;
-  for (Measurement& m : positions.rows) {
+void leave_out_rotations(Dataset& data) {
+  for (Measurement& m : data.rows) {
     if (m.kind == MeasurementKind::pose) m.kind = MeasurementKind::position;
   }
+}
+
+namespace {
+
+// How far rotations may lie from where positions put the flange and be sound, as read from the robot file's priors: three
+// standard deviations of the twists and zeros of all joints, which positions may leave open.
+double left_open_rad(const ParameterList& parameters) {
+  double squares = 0.0;
+  for (const Parameter& p : parameters.free) {
+    if (is_angle(p.id)) squares += p.prior * p.prior;
+  }
+  return 3.0 * std::sqrt(squares);
+}
+
+}  // namespace
+
+std::string why_rotations_contradict(const Robot& robot, const Dataset& data, const std::vector<std::size_t>& rows,
+                                     const UnknownsOptions& options) {
+  constexpr std::ptrdiff_t enough = 6;
+  const auto is_pose = [&](std::size_t row) { return data.rows[row].kind == MeasurementKind::pose; };
+  if (std::count_if(rows.begin(), rows.end(), is_pose) < enough) return "";
+  Dataset positions = data;
+  leave_out_rotations(positions);
   const Unknowns unknowns = choose_unknowns(robot, positions, rows, options);
   Selection selection;
   selection.rows = rows;
-  const Fit fitted = fit_frames(unknowns, positions, selection, options.noise_mm);
+  const Fit nominal = fit_frames(unknowns, positions, selection, options.noise_mm);
+  // Rotations of the calibrated arm: what its nominal geometry is wrong by is not counted against them.
+  FitControl control;
+  control.loss = Loss::huber;
+  control.noise_mm = options.noise_mm;
+  control.tolerance = 1e-2;
+  const Fit fitted = fit(positions, selection, unknowns.layout, nominal.estimate, control);
   const std::vector<Turn> turns = turns_of(data, rows, fitted.estimate);
-  if (turns.empty()) return;
+  if (turns.empty()) return "";
   const double as_read = misfit(data, turns);
-  // What the positions do not explain, seen from the middle of the points, is an angle too: where they fit badly, something
-  // else is wrong, and the rotations are no witness. Ten times that and two degrees (joints' zeros that are off) are not
-  // explained by the arm. A wrong convention is off by tens of degrees unless the flange hardly turns; what fits three
-  // times better is then offered.
+  // Where the nominal geometry misses the positions widely, something else is wrong, and the rotations are no witness. What
+  // it misses them by, seen from their middle, is an angle too, which the rotations have to exceed tenfold.
   const double unit_mm = states_sigma(positions) ? mean_sigma_mm(positions, rows, options.noise_mm) : 1.0;
-  const double scale_m = 1e-3 * fitted.scale * unit_mm;
-  const double suspicious_rad = std::max(2.0 * rad_per_deg, 10.0 * scale_m / points_spread_m(positions, rows));
+  constexpr double tenfold = 10.0;
+  const double suspicious_rad = std::max(left_open_rad(unknowns.parameters),
+                                         tenfold * 1e-3 * nominal.scale * unit_mm / points_spread_m(positions, rows));
+  // As for every other mistake: what is offered leaves less than a third.
   constexpr double far_better = 3.0;
-  const std::string beginning = "The positions alone fit to " + number(fitted.scale * unit_mm) +
-                                " mm an axis (nominal geometry); the rotations read as " + data.rotation.convention.name +
-                                " lie " + in_degrees(as_read) + " from it in the median. ";
+  const std::string beginning = "The positions alone fit to " + number(fitted.scale * unit_mm) + " mm an axis; the rotations read as " +
+                                data.rotation.convention.name + " lie " + in_degrees(as_read) + " from that in the mean. ";
+  const std::string end = " The figures are of the positions alone.";
   if (as_read > suspicious_rad) {
     const RotationFit best = rotation_fits(data, rows, fitted.estimate).front();
     if (far_better * best.misfit_rad < as_read) {
-      throw Refusal(beginning + "They fit as " + reading_of(best) + ": " + in_degrees(best.misfit_rad) + ".");
+      return beginning + "They fit as " + reading_of(best) + ": " + in_degrees(best.misfit_rad) + "." + end;
     }
     // A quarter of the mean angle between two random rotations (126 degrees): nothing that joint zeros explain.
-    if (as_read > std::max(suspicious_rad, 30.0 * rad_per_deg)) {
-      throw Refusal(beginning + "They fit in no convention that is known (the best, " + best.convention.name + ", leaves " +
-                    in_degrees(best.misfit_rad) + "): leave them out by --rotation none, or see how the file states them.");
+    constexpr double beyond_zeros_rad = 30.0 * rad_per_deg;
+    if (as_read > std::max(suspicious_rad, beyond_zeros_rad)) {
+      return beginning + "They fit in no convention that is known (the best, " + best.convention.name + ", leaves " +
+             in_degrees(best.misfit_rad) + "): leave them out by --rotation none, or see how the file states them." + end;
     }
   }
-  if (options.fit_tool) return;
+  if (options.fit_tool) return "";
   const double as_given = misfit(data, turns, unknowns.nominal.flange_R_probe);
   if (as_given > suspicious_rad && far_better * as_read < as_given) {
-    throw Refusal("The probe is turned on the flange otherwise than --tool given says: the rotations lie " +
-                  in_degrees(as_given) + " from it in the median, and " + in_degrees(as_read) +
-                  " with its turn fitted. Use --tool fit, or state rxryrz in the robot file's [tool].");
+    return "The probe is turned on the flange otherwise than --tool given says: the rotations lie " + in_degrees(as_given) +
+           " from it in the mean, and " + in_degrees(as_read) +
+           " with its turn fitted. Use --tool fit, or state rxryrz in the robot file's [tool]." + end;
   }
+  return "";
 }
 
 }  // namespace mdhcal::offline

@@ -65,7 +65,9 @@ std::string advice(const Layout& layout, const MeasurementModel& model, const Ei
     typical = std::max(typical, jacobian.norm() * direction.norm());
     if (movement > best) best = movement, best_q = q;
   }
-  if (!(best > 1e-6 * typical)) {
+  // Of a direction that is lost in every pose only the Jacobian's rounding is left.
+  constexpr double rounding_share = 1e-6;
+  if (!(best > rounding_share * typical)) {
     // Only what the last link holds is told by another target; two rails or parallel axes stay as they are.
     return std::string("No pose of this arm with this target tells ") + (alone ? "it" : "them apart") + ": " +
            (at_flange ? "put the target further off the last axis, or fix " : "fix ") + (alone ? "it." : "one of them.");

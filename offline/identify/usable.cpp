@@ -7,6 +7,7 @@
 #include "mdhcal/blob.hpp"
 #include "offline/base/sentences.hpp"
 #include "offline/identify/named_rows.hpp"
+#include "offline/identify/pose_checks.hpp"
 #include "offline/robot/units.hpp"
 
 namespace mdhcal::offline {
@@ -50,19 +51,24 @@ std::string sd_text(const Calibration& c, std::size_t first, std::size_t count, 
   return number(std::sqrt(largest) * factor) + " " + unit;
 }
 
+std::string what_is_missing(const Calibration& c) {
+  return spread_of_poses(c.robot, c.training, c.training_rows) +
+         " Measure points that lie neither on one line nor near one orientation, or give base or target (--base given, --tool given).";
+}
+
 void hold_frames(Calibration& c) {
   if (only_distances(c)) return;  // lengths between poses know no base; the notes say so
   if (c.identifiability.frame_rank < c.identifiability.frame_unknowns) {
     c.reasons.push_back("Base frame and targets are not determined: of their " +
                         std::to_string(c.identifiability.frame_unknowns) + " unknowns these poses tell " +
                         std::to_string(c.identifiability.frame_rank) +
-                        ". Measure points that lie neither on one line nor near one orientation, or give base or target "
-                        "(--base given, --tool given).");
+                        ". " + what_is_missing(c));
     return;
   }
   // What a calibration is for: to leave less than the nominal geometry does. Where base and targets alone leave more than
   // that over the workspace, the measured poses agree and others do not.
-  const double nominal_mm = c.judged().before.mean;
+  // Held-out rows are no measure of it: where base or targets are open, it is these that they are off by.
+  const double nominal_mm = c.cross_validation ? c.cross_validation->figures.before.mean : c.train.before.mean;
   if (!(c.accuracy.frames_median_mm > nominal_mm)) return;
   std::string sds;
   if (c.layout.base) {
@@ -75,7 +81,7 @@ void hold_frames(Calibration& c) {
   c.reasons.push_back("Base frame and targets are badly determined (standard deviations: " + sds +
                       "): positions over the workspace are uncertain by " + number(c.accuracy.frames_median_mm) +
                       " mm from these alone, and the nominal geometry misses by only " + number(nominal_mm) +
-                      " mm. Measure points that lie neither on one line nor near one orientation.");
+                      " mm. " + what_is_missing(c));
 }
 
 }  // namespace
@@ -115,10 +121,11 @@ std::string sentence_of(const Robot& robot, const ZeroOffset& zero) {
 }
 
 void find_reasons(const CalibrationOptions& options, Calibration& c) {
+  if (!c.contradiction.empty()) c.reasons.push_back(c.contradiction);
   if (!c.converged) c.reasons.push_back("The fit did not converge.");
   compare_with_nominal(c);
-  hold_residual(options.max_residual_mm.value_or(default_max_residual_mm(c.robot)), c);
   hold_frames(c);
+  hold_residual(options.max_residual_mm.value_or(default_max_residual_mm(c.robot)), c);
   bool in_order = false;
   const std::string shared = what_named_rows_share(c, false, &in_order);
   if (in_order && 10 * c.train.outliers.size() > c.training_rows.size()) {

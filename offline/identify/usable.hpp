@@ -16,7 +16,7 @@ std::vector<ZeroOffset> large_zero_offsets(const Calibration& calibration);
 /// "joint 3's zero is 4.95 degrees off".
 std::string sentence_of(const Robot& robot, const ZeroOffset& zero);
 
-/// Adds to `calibration.reasons`: not converged; no better than the nominal geometry, or misses by more than the residual
+/// Adds to `calibration.reasons`: rotations that contradict the positions; not converged; no better than the nominal geometry, or misses by more than the residual
 /// that counts as explained, on the rows that judge it; base or targets not determined by the measurements; zeros that no
 /// controller would accept. Needs the figures, the covariance and the predicted accuracy.
 void find_reasons(const CalibrationOptions& options, Calibration& calibration);

@@ -72,7 +72,8 @@ std::string verdict_of(const Calibration& c) {
                      " mm.";
   }
   if (figures.predicted_mean_mm > 0.0) out += " Predicted mean: " + number(figures.predicted_mean_mm) + " mm.";
-  return out;
+  const std::string turned = rotation_sentence(c.judged_rotation(), c.test ? "held-out" : c.cross_validation ? "left-out" : "training");
+  return turned.empty() ? out : out + " " + turned;
 }
 
 std::vector<std::string> findings_of(const Calibration& c) {

@@ -226,6 +226,7 @@ std::string result_json(const Calibration& c, const Assessment& assessment) {
   json["cross_validation"] = nullptr;
   if (c.cross_validation) {
     json["cross_validation"] = split(c.cross_validation->figures);
+    add_rotation(json["cross_validation"], c.cross_validation->rotation);
     json["cross_validation"]["folds"] = c.cross_validation->folds;
     json["cross_validation"]["misfit"] = finite(c.cross_validation->misfit);
   }

@@ -106,8 +106,9 @@ bool run_gnuplot(const std::string& script, std::string& output, std::string& re
   posix_spawn_file_actions_adddup2(&actions, to.read_end(), STDIN_FILENO);
   posix_spawn_file_actions_adddup2(&actions, from.write_end(), STDOUT_FILENO);
   posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, "/dev/null", O_WRONLY, 0);
-  char program[] = "gnuplot", no_defaults[] = "-d";
-  char* arguments[] = {program, no_defaults, nullptr};
+  // Named as a file, standard input is read in blocks; else gnuplot asks the system for every character of it.
+  char program[] = "gnuplot", no_defaults[] = "-d", script_file[] = "/dev/stdin";
+  char* arguments[] = {program, no_defaults, script_file, nullptr};
   pid_t child = 0;
   // A program that dies early must not kill this one by the signal for a broken pipe.
   struct sigaction ignore = {}, before = {};

@@ -65,6 +65,17 @@ MDHCAL_SHARED_DATA_TEST(PosesCommand, AProbeTurnedByAQuarterIsCalibratedWith) {
   const Outcome again = run_mdhcal({"calibrate", folder / "poses/corrected.toml", folder / "train.csv", "--tool", "given", "--accept",
                                     "corrected on these rows", "-o", folder / "again"});
   EXPECT_EQ(again.exit_code, 0) << again.err;
+  // The same rows with the quaternion's columns named in the wrong order: refused with a report of the positions alone.
+  std::string wrong = read_bytes(folder / "train.csv");
+  wrong.replace(wrong.find("qw,qx,qy,qz"), 11, "qx,qy,qz,qw");
+  write_bytes(folder / "wrong.csv", wrong);
+  const Outcome refused = run_mdhcal({"calibrate", shared_data("ur10_b/robot.toml"), folder / "wrong.csv", "-o", folder / "wrong"});
+  EXPECT_EQ(refused.exit_code, 1);
+  EXPECT_NE(refused.err.find("They fit as qw, qx, qy, qz (--rotation quaternion)"), std::string::npos) << refused.err;
+  EXPECT_EQ(names_in(folder / "wrong"), (std::vector<std::string>{"report.html", "residuals.csv", "result.json"}));
+  const nlohmann::json result = nlohmann::json::parse(read_bytes(folder / "wrong/result.json"));
+  EXPECT_FALSE(result["usable"]);
+  EXPECT_EQ(result["reasons"].size(), 1U) << result["reasons"];
 }
 
 const char* const two_joints = "[[link]]\nalpha = 0\na = 0\nd = 300\ntheta = 0\n[[link]]\nalpha = -90\na = 100\nd = 0\ntheta = 0\n";

@@ -93,7 +93,9 @@ TEST_F(BadInputCommand, OneOrientationThroughout) {
     row["q1"] = "20", row["q5"] = "40", row["q6"] = "-25";
     row["q4"] = std::to_string(15 - number(row["q2"]) - number(row["q3"]));
   });
-  expect_stop(run, 1, "The flange has one orientation throughout", "Measure with different orientations");
+  expect_unusable(run, "Base frame and targets are", "the flange turns by at most 0.00 degrees");
+  const nlohmann::json result = nlohmann::json::parse(read_bytes(folder_ / "r/result.json"));
+  EXPECT_FALSE(result["usable"]);
 }
 
 TEST_F(BadInputCommand, AllMeasurementsAtZero) {
@@ -121,6 +123,17 @@ TEST_F(BadInputCommand, JointsInRadiansReadAsDegrees) {
   const Outcome stated = calibrate(in_radians);
   EXPECT_EQ(stated.exit_code, 1) << stated.err;
   EXPECT_EQ(stated.err.find("name the columns"), std::string::npos) << stated.err;
+}
+
+// Of a spherical wrist three lengths are told: a wrong unit is taken up by them, and only the blob's bounds refuse it.
+TEST_F(BadInputCommand, AUnitThatTheGeometryTakesUp) {
+  simulate("spherical-wrist");
+  std::string robot = read_bytes(folder_ / "s/robot.toml");
+  const std::string unit = "length_unit = \"mm\"";
+  const std::size_t at = robot.find(unit);
+  ASSERT_NE(at, std::string::npos);
+  write_bytes(folder_ / "s/robot.toml", robot.replace(at, unit.size(), "length_unit = \"m\""));
+  expect_unusable(calibrate([](std::size_t, Row&) {}), "With the robot file's lengths in millimetres the residual is", "set length_unit = \"mm\"");
 }
 
 TEST_F(BadInputCommand, TwoJointsSwapped) {

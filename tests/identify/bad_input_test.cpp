@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "offline/base/error.hpp"
+#include "offline/base/random.hpp"
 #include "offline/identify/mistakes/diagnose.hpp"
 #include "offline/robot/vectors.hpp"
 #include "offline/simulate/family.hpp"
@@ -48,16 +49,55 @@ TEST(BadInput, AllMeasurementsOnePoint) {
   EXPECT_TRUE(holds(said<InputError>(s.nominal, s.train), "same point"));
 }
 
-TEST(BadInput, OneOrientationThroughout) {
-  // Three parallel axes and a wrist that turns back: q4 keeps the sum.
-  Simulation s = arm();
+// Measured again by the true arm, at other readings.
+void measure_again(Simulation& s) {
+  const MeasurementModel truth = truth_model(s);
+  Random random(17);
   for (Measurement& m : s.train.rows) {
-    m.q[0] = 0.3;
-    m.q[3] = 0.2 - m.q[1] - m.q[2];
-    m.q[4] = 0.7;
-    m.q[5] = -0.4;
+    m.position_m = truth.target_position(m.q.data(), 0);
+    for (double& c : m.position_m) c += 0.02e-3 * random.normal();
   }
-  EXPECT_TRUE(holds(said<Refusal>(s.nominal, s.train), "one orientation"));
+}
+
+// From one orientation to many, the verdict changes once: where base and target are told by less than the nominal geometry is
+// wrong, the reason says by how much.
+TEST(BadInput, HardlyTurningFlange) {
+  for (const double turn_rad : {0.0, 1e-4, 1e-3}) {
+    // Three parallel axes and a wrist that turns back: q4 keeps the sum.
+    Simulation s = arm();
+    for (std::size_t i = 0; i < s.train.rows.size(); ++i) {
+      Measurement& m = s.train.rows[i];
+      m.q[0] = 0.3;
+      m.q[4] = 0.7 + turn_rad * std::sin(static_cast<double>(i));
+      m.q[5] = -0.4 + turn_rad * std::cos(2.0 * static_cast<double>(i));
+      m.q[3] = 0.2 - m.q[1] - m.q[2] + turn_rad * std::cos(static_cast<double>(i));
+    }
+    measure_again(s);
+    const Calibration c = calibrate(s.nominal, s.train, {});
+    EXPECT_FALSE(c.usable()) << turn_rad;
+    const std::string reasons = said<Refusal>(s.nominal, s.train);
+    EXPECT_TRUE(holds(reasons, "Base frame and targets are")) << turn_rad << ' ' << reasons;
+    EXPECT_TRUE(holds(reasons, "and the flange turns by at most")) << turn_rad << ' ' << reasons;
+  }
+}
+
+// Only joint 1 moves, and little: the points lie near a line, and the base may turn about it.
+TEST(BadInput, PointsOnOneLine) {
+  Simulation s = arm();
+  Robot robot = s.nominal;
+  CalibrationOptions options;
+  options.fit_tool = false;
+  const MeasurementModel truth = truth_model(s);
+  robot.tool_p_m = truth.estimate().flange_p_m.front();
+  for (std::size_t i = 0; i < s.train.rows.size(); ++i) {
+    Measurement& m = s.train.rows[i];
+    for (std::size_t j = 1; j < 6; ++j) m.q[j] = 0.3 + 0.1 * static_cast<double>(j);
+    m.q[0] = 0.2 + 1e-3 * static_cast<double>(i);
+  }
+  measure_again(s);
+  const std::string reasons = said<Refusal>(robot, s.train, options);
+  EXPECT_TRUE(holds(reasons, "Base frame and targets are")) << reasons;
+  EXPECT_TRUE(holds(reasons, "mm along their principal axes")) << reasons;
 }
 
 TEST(BadInput, JointAnglesInTheWrongUnit) {

@@ -60,7 +60,7 @@ class ClassicalProblems : public ::testing::Test {
         note("gcv", generalised_cross_validation(draw.problem));
         note("quasi-optimality", quasi_optimality(draw.problem));
         note("discrepancy", discrepancy(draw.problem, draw.sigma));
-        note("reml", marginal_likelihood(draw.problem, 1.0));
+        note("reml", marginal_likelihood(draw.problem));
       }
     }
     for (const auto& [key, values] : ratios) {
@@ -138,7 +138,7 @@ TEST(Rules, StayWithinTheirBounds) {
     const Draw draw = draw_of(given, 3);
     for (const LambdaChoice& choice :
          {l_curve(draw.problem), generalised_cross_validation(draw.problem), quasi_optimality(draw.problem),
-          discrepancy(draw.problem, draw.sigma), marginal_likelihood(draw.problem, 1.0)}) {
+          discrepancy(draw.problem, draw.sigma), marginal_likelihood(draw.problem)}) {
       if (!choice.found) continue;
       EXPECT_GE(choice.lambda, draw.problem.smallest_lambda() * 0.999) << choice.rule;
       EXPECT_LE(choice.lambda, draw.problem.largest_lambda() * 1.001) << choice.rule;

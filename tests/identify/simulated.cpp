@@ -39,6 +39,15 @@ std::vector<std::size_t> add_gross_errors(Dataset& data, double share, std::uint
   return rows;
 }
 
+void add_shared_error(Dataset& data, double sd_m, std::uint64_t seed) {
+  Random random(seed);
+  std::vector<Vector3> error(data.groups.size());
+  for (Vector3& each : error) {
+    for (double& c : each) c = sd_m * random.normal();
+  }
+  for (Measurement& m : data.rows) m.position_m = plus(m.position_m, error[m.group]);
+}
+
 MeasurementModel truth_model(const Simulation& simulation) {
   Estimate truth;
   truth.geometry = simulation.truth.geometry;

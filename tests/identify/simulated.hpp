@@ -17,6 +17,9 @@ offline::SimulationOptions arm_options(std::uint64_t seed);
 /// Adds errors of 1 to 50 mm in random directions to a share of the rows; returns their indices, ascending.
 std::vector<std::size_t> add_gross_errors(offline::Dataset& data, double share, std::uint64_t seed);
 
+/// Adds an error of `sd_m` an axis (tracker frame) that all rows of a pose share.
+void add_shared_error(offline::Dataset& data, double sd_m, std::uint64_t seed);
+
 /// The simulated arm as it is: geometry, base and its (first) target point.
 offline::MeasurementModel truth_model(const offline::Simulation& simulation);
 

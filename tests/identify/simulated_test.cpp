@@ -94,6 +94,33 @@ TEST(Uncertainty, IntervalsCoverTheTruth) {
   EXPECT_LE(share, 0.98);
 }
 
+// Three reflectors a pose share the pose's error: three times as many rows are not three times as much told.
+TEST(Uncertainty, IntervalsReckonWithWhatRowsOfAPoseShare) {
+  std::size_t inside = 0;
+  std::size_t count = 0;
+  double by_pose = 0.0;
+  for (std::uint64_t seed = 1; seed <= 48; ++seed) {
+    SimulationOptions so = arm_options(seed);
+    so.angle_error_rad = 1e-3;
+    so.configurations = 40;
+    so.targets = 3;
+    Simulation s = simulate(family_robot(family_names()[seed % 4]), so);
+    add_shared_error(s.train, 0.1e-3, seed);
+    CalibrationOptions options;
+    options.cross_validate = false;
+    const Calibration c = calibrate(s.nominal, s.train, options);
+    const Coverage one = coverage(s, c);
+    inside += one.inside;
+    count += one.count;
+    by_pose += c.shared.by_pose / 48.0;
+  }
+  const double share = static_cast<double>(inside) / static_cast<double>(count);
+  EXPECT_GE(share, 0.93);
+  EXPECT_LE(share, 0.97);
+  // 0.1 mm shared, 0.02 mm of each row's own.
+  EXPECT_NEAR(by_pose, 1.0 / 1.04, 0.01);
+}
+
 // At single joint vectors, within the measured poses and far from them: the same arm measured 200 times.
 TEST(Uncertainty, PredictedPositionErrorAtAnyPoseIsThatOfRepeatedCalibrations) {
   SimulationOptions quiet = arm_options(7);

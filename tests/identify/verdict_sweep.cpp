@@ -20,10 +20,10 @@ struct Tally {
 
   void add(const VerdictOutcome& o) {
     ++jobs;
-    held += o.low <= o.truth && o.truth <= o.high ? 1 : 0;
-    below_half += o.mean < 0.5 * o.truth ? 1 : 0;
-    zero += o.verdict.find(" 0 mm") != std::string::npos || !(o.mean > 0) ? 1 : 0;
-    usable += o.usable ? 1 : 0;
+    held += o.low <= o.truth && o.truth <= o.high ? 1U : 0U;
+    below_half += o.mean < 0.5 * o.truth ? 1U : 0U;
+    zero += o.verdict.find(" 0 mm") != std::string::npos || !(o.mean > 0) ? 1U : 0U;
+    usable += o.usable ? 1U : 0U;
     said += o.mean;
     truth += o.truth;
     noise_free += o.noise_free;

@@ -10,6 +10,7 @@
 #include "offline/identify/mistakes/judge.hpp"
 #include "offline/identify/mistakes/screening.hpp"
 #include "offline/identify/mistakes/series.hpp"
+#include "offline/identify/rotation_check.hpp"
 #include "offline/identify/verdict.hpp"
 
 namespace mdhcal::offline {
@@ -327,17 +328,22 @@ Diagnosis diagnose(const Job& job, const std::optional<Residual>& as_given,
 
 std::optional<Diagnosis> explain_by_mistakes(const Job& job, bool always, Calibration& calibration,
                                              const std::function<void(std::size_t, std::size_t)>& progress) {
-  const bool whole = always || !calibration.usable();
+  const bool usable = calibration.usable();
+  const bool whole = always || !usable;
+  // That the rotations are misread explains what is wrong; the positions are good.
+  if (!always && !calibration.contradiction.empty()) return std::nullopt;
   const double noise_mm = states_sigma(calibration.training) ? calibration.residual_unit_mm : calibration.noise_mm;
   if (!whole && calibration.scale_mm < 2.0 * noise_mm) return std::nullopt;
   const Residual as_given{calibration.scale_mm, calibration.train.after.mean};
-  const Diagnosis out = whole ? diagnose(job, as_given, progress) : Search(job, progress).run_frames(as_given);
+  Job searched = job;
+  if (!calibration.contradiction.empty()) leave_out_rotations(searched.data);
+  const Diagnosis out = whole ? diagnose(searched, as_given, progress) : Search(searched, progress).run_frames(as_given);
   if (out.named()) {
     calibration.reasons.insert(calibration.reasons.begin(), out.sentence);
   } else if (whole) {
     calibration.notes.push_back(out.sentence);
   }
-  calibration.accepted = calibration.usable() ? std::string() : job.options.accept;
+  if (usable && !calibration.usable()) calibration.accepted = job.options.accept;
   calibration.verdict = verdict_of(calibration);
   return out;
 }

@@ -110,7 +110,8 @@ Judgement judge(const Job& job) {
 
 bool explains_more(double a_mm, double b_mm, double freedom_a, double freedom_b, std::size_t trials) {
   if (!(b_mm < a_mm)) return false;
-  const double ratio = a_mm / std::max(b_mm, 1e-9);
+  constexpr double least_mm = 1e-9;  // an exact fit has no ratio
+  const double ratio = a_mm / std::max(b_mm, least_mm);
   const double half_a = median_efficiency * freedom_a;
   const double half_b = median_efficiency * freedom_b;
   return half_a >= 1.0 && half_b >= 1.0 &&

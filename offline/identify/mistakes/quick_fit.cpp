@@ -19,6 +19,8 @@ namespace {
 
 // Columns are direction cosines and metres: a direction below a millionth of the largest is noise of the measurements.
 constexpr double map_tolerance = 1e-6;
+// No tracker tells it: a residual below is rounding [m].
+constexpr double nanometre = 1e-9;
 // Quadratic convergence from the linear start: two steps reach the digits that a screening needs, the rest reweighs.
 constexpr int newton_steps = 5;
 
@@ -168,7 +170,7 @@ QuickFit quick_fit(const Estimate& nominal, const std::vector<Sighting>& sightin
     for (std::size_t i = 0; i < sightings.size(); ++i) {
       norms[i] = norm(minus(transform(estimate.tracker_T_base, base_p[i]), points[i])) / chi_median(3);
     }
-    const double scale = robust_scale(norms, freedom, 1e-9);
+    const double scale = robust_scale(norms, freedom, nanometre);
     const double misfit = scale / std::min(spread_measured, spread(base_p));
     if (misfit < out.misfit) {
       out.misfit = misfit;

@@ -54,8 +54,11 @@ bool better(const Candidate& a, const Candidate& b) {
 }
 
 void sort_best_first(std::vector<Candidate>& candidates) {
-  // By the logarithm in steps, so that "about the same" orders strictly.
-  const auto step = [](const Candidate& c) { return std::floor(std::log(std::max(c.misfit, 1e-12)) / 0.02); };
+  // By the logarithm in steps, so that "about the same" orders strictly: within two per cent, where the closed fit's own
+  // error lies. No misfit is zero.
+  constexpr double about_the_same = 0.02;
+  constexpr double least_positive = 1e-12;
+  const auto step = [&](const Candidate& c) { return std::floor(std::log(std::max(c.misfit, least_positive)) / about_the_same); };
   std::stable_sort(candidates.begin(), candidates.end(), [&](const Candidate& a, const Candidate& b) {
     const double sa = step(a);
     const double sb = step(b);

@@ -16,6 +16,13 @@ namespace mdhcal::offline {
 
 namespace {
 
+// Columns are turns and metres: a direction below a millionth of the largest is noise of the measurements.
+constexpr double circle_tolerance = 1e-6;
+// Readings [rad] of one that did not move, as far as a file writes digits.
+constexpr double same_reading = 1e-6;
+// No tracker tells a nanometre: a residual below is rounding.
+constexpr double rounding_m = 1e-9;
+
 // Each row gives two equations beside its own reading; eight for base and target need nine rows with something over.
 constexpr std::size_t least_rows = 8;
 constexpr int elimination_steps = 40;
@@ -120,7 +127,7 @@ void refine(const std::vector<Circle>& circle, const std::vector<Sighting>& sigh
     }
     const double scalars = 2.0 * static_cast<double>(n);
     const double unknowns = static_cast<double>(a.cols());
-    const double scale = robust_scale(norms, scalars > unknowns + 1.0 ? std::sqrt(scalars / (scalars - unknowns)) : 3.0, 1e-9);
+    const double scale = robust_scale(norms, scalars > unknowns + 1.0 ? std::sqrt(scalars / (scalars - unknowns)) : 3.0, rounding_m);
     if (scale < fit.scale_m) {
       fit.scale_m = scale;
       fit.estimate = now;
@@ -135,7 +142,7 @@ void refine(const std::vector<Circle>& circle, const std::vector<Sighting>& sigh
         b(static_cast<Eigen::Index>(3 * i + k)) *= root;
       }
     }
-    const Eigen::VectorXd x = least_squares(a, b, 1e-6).x;
+    const Eigen::VectorXd x = least_squares(a, b, circle_tolerance).x;
     // Far from the solution half a radian and the arm's own length bound the step.
     const double size = std::max(x.head(3).norm() / 0.5, x.tail(x.size() - 3).cwiseAbs().maxCoeff() / 0.5);
     const double factor = size > 1.0 ? 1.0 / size : 1.0;
@@ -157,7 +164,7 @@ std::vector<Hypothesis> stuck_joints(const Job& job) {
   }
   for (std::size_t joint = 0; joint < job.data.joint_count; ++joint) {
     const bool constant = std::all_of(sightings.begin(), sightings.end(), [&](const Sighting& s) {
-      return std::fabs(s.q[joint] - sightings.front().q[joint]) < 1e-6;
+      return std::fabs(s.q[joint] - sightings.front().q[joint]) < same_reading;
     });
     if (!constant || job.robot.geometry.joint[joint].kind != JointKind::revolute) continue;
     std::vector<Circle> circle;

@@ -218,7 +218,8 @@ void add_signs_of_the_table(const Job& job, Table& out) {
   for (std::size_t i = 0; i < joint_count(job); ++i) {
     const Link& link = job.robot.geometry.link[i];
     const auto add = [&](MistakeKind kind, double value, double Link::*key, const char* name) {
-      if (!(std::fabs(value) > 1e-9)) return;
+      constexpr double none = 1e-9;  // a length that the table states as zero [m], an angle likewise [rad]
+      if (!(std::fabs(value) > none)) return;
       Hypothesis h;
       h.kind = kind;
       h.what = std::string(name) + " of link " + std::to_string(i + 1) + " of the other sign";
@@ -232,7 +233,9 @@ void add_signs_of_the_table(const Job& job, Table& out) {
     };
     add(MistakeKind::length_sign, link.a_m, &Link::a_m, "a");
     add(MistakeKind::length_sign, link.d_m, &Link::d_m, "d");
-    if (std::fabs(std::sin(link.alpha_rad)) > 1e-6) add(MistakeKind::twist_sign, link.alpha_rad, &Link::alpha_rad, "alpha");
+    // Of axes that are parallel as far as files write digits, the twist has no sign.
+    constexpr double parallel = 1e-6;
+    if (std::fabs(std::sin(link.alpha_rad)) > parallel) add(MistakeKind::twist_sign, link.alpha_rad, &Link::alpha_rad, "alpha");
   }
 }
 
