@@ -124,7 +124,7 @@ struct Dependence {
 struct PredictedAccuracy {
   std::vector<std::array<double, 4>> points;  ///< x, y, z in the robot's base frame, standard deviation [mm]
   double median_mm = 0, p95_mm = 0, max_mm = 0;
-  double frames_median_mm = 0;                ///< the part of base and targets alone
+  double frames_median_mm = 0;                ///< of base and targets, if the geometry were known
 };
 
 /// A zero that --rezero moved into the nominal geometry.

@@ -104,6 +104,9 @@ Covariance covariance_of(const Dataset& data, const Selection& selection, const 
     const Eigen::MatrixXd follow = -spread * system.frame_by_geometry;
     all.topLeftCorner(frames, frames) =
         noise.variance * spread * spread.transpose() + follow * geometry * follow.transpose();
+    const Eigen::MatrixXd alone = noise.variance * spread * spread.transpose();
+    out.frame_size = layout.frame_columns();
+    out.frames.assign(alone.data(), alone.data() + alone.size());
     all.topRightCorner(frames, n) = follow * geometry;
     all.bottomLeftCorner(n, frames) = all.topRightCorner(frames, n).transpose();
   }

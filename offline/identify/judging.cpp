@@ -182,7 +182,14 @@ CrossValidation judge_left_out(const LeftOut& left_out, const Calibration& c) {
   // 1 + k / (k - 1) times that of independent ones (Nadeau and Bengio 2003, on the logarithm here).
   const auto k = static_cast<double>(out.folds);
   if (std::isfinite(out.figures.mean.high)) {
-    const double width = std::log(out.figures.mean.high / out.figures.after.mean) * std::sqrt(1.0 + k / (k - 1.0));
+    // Errors left out are made of the fit's residuals, of which only its degrees of freedom are independent: as many poses'
+    // worth stand behind Student's t.
+    double scalars = 0.0;
+    for (const std::size_t row : c.training_rows) scalars += static_cast<double>(residual_count(c.training.rows[row].kind));
+    const auto poses = static_cast<double>(out.figures.poses);
+    const double independent = poses * std::min(1.0, c.covariance.freedom / scalars);
+    const double student = student_975(std::max(1.0, independent - 1.0)) / student_975(poses - 1.0);
+    const double width = std::log(out.figures.mean.high / out.figures.after.mean) * student * std::sqrt(1.0 + k / (k - 1.0));
     out.figures.mean = {out.figures.after.mean * std::exp(-width), out.figures.after.mean * std::exp(width)};
   }
   return out;
@@ -193,10 +200,9 @@ PredictedAccuracy predicted_accuracy(const MeasurementModel& model, const Layout
   if (covariance.size == 0) return out;
   const Frame<double> base_T_tracker = inverted(model.estimate().tracker_T_base);
   Covariance frames = covariance;
-  for (std::size_t i = 0; i < frames.size; ++i) {
-    for (std::size_t j = 0; j < frames.size; ++j) {
-      if (i >= layout.frame_columns() || j >= layout.frame_columns()) frames.value[i * frames.size + j] = 0.0;
-    }
+  frames.value.assign(frames.value.size(), 0.0);
+  for (std::size_t i = 0; i < frames.frame_size; ++i) {
+    for (std::size_t j = 0; j < frames.frame_size; ++j) frames.value[i * frames.size + j] = frames.frames[i * frames.frame_size + j];
   }
   Random random(1);
   std::vector<double> all;

@@ -12,6 +12,8 @@ namespace mdhcal::offline {
 struct Covariance {
   std::size_t size = 0;
   std::vector<double> value;        ///< size x size
+  std::size_t frame_size = 0;
+  std::vector<double> frames;       ///< frame_size x frame_size: of base and targets if the geometry were known
   double sigma = 0;                 ///< estimated standard deviation of a scaled residual (mm without sigma)
   double prior_scale = 1;           ///< factor on the prior standard deviations that the deviations found suggest, >= 1
   double freedom = 0;               ///< degrees of freedom behind sigma

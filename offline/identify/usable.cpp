@@ -47,7 +47,7 @@ void hold_residual(double limit_mm, Calibration& c) {
 
 std::string sd_text(const Calibration& c, std::size_t first, std::size_t count, double factor, const char* unit) {
   double largest = 0.0;
-  for (std::size_t i = first; i < first + count; ++i) largest = std::max(largest, c.covariance.at(i, i));
+  for (std::size_t i = first; i < first + count; ++i) largest = std::max(largest, c.covariance.frames[i * c.covariance.frame_size + i]);
   return number(std::sqrt(largest) * factor) + " " + unit;
 }
 
@@ -65,6 +65,7 @@ void hold_frames(Calibration& c) {
                         ". " + what_is_missing(c));
     return;
   }
+  // Were the geometry known: what base and geometry are uncertain by together cancels in the positions.
   // What a calibration is for: to leave less than the nominal geometry does. Where base and targets alone leave more than
   // that over the workspace, the measured poses agree and others do not.
   // Held-out rows are no measure of it: where base or targets are open, it is these that they are off by.
