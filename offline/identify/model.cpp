@@ -13,15 +13,15 @@ namespace {
 
 // A target point at one row, in the base frame, with the frames that its derivatives are read off.
 struct Reach {
+  const double* q = nullptr;
   Frame<double> frames[max_joints + 2];
   Vector3 base_p_m{};
 };
 
-void reach(const Arm<double>& arm, const double* q, const Vector3& flange_p_m, Reach& out) {
+void frames_at(const Arm<double>& arm, const double* q, Reach& out) {
   if (link_frames(arm, q, out.frames) != Status::ok) {
     throw InputError("A joint reading is not finite or beyond what the kinematics accept.");
   }
-  out.base_p_m = transform(out.frames[arm.joint_count + 1], flange_p_m);
 }
 
 Vector3 column_of(const Frame<double>& frame, int k) {
@@ -31,6 +31,9 @@ Vector3 column_of(const Frame<double>& frame, int k) {
 Vector3 origin_of(const Frame<double>& frame) {
   return {frame.position_m[0], frame.position_m[1], frame.position_m[2]};
 }
+
+// z_i . ((o_{j+1} - o_i) x g): what a unit mass at the end of link j does about joint i [m].
+double lever_m(const Arm<double>& arm, const Frame<double>* frames, const double* g, std::int32_t i, std::int32_t j);
 
 // A parameter moves everything beyond it along or about one line, given in the base frame.
 struct Screw {
@@ -56,6 +59,71 @@ Screw screw_of(const Arm<double>& arm, const Frame<double>* frames, ParameterId 
   Vector3 axis{};
   for (std::size_t k = 0; k < 3; ++k) axis[k] = link.cos_alpha * z[k] - link.sin_alpha * y[k];
   return {axis, origin_of(after), id.key == ParameterKey::theta};
+}
+
+double lever_m(const Arm<double>& arm, const Frame<double>* frames, const double* g, std::int32_t i, std::int32_t j) {
+  const Screw joint = screw_of(arm, frames, {ParameterKey::theta, i});
+  // Past the last link's end stands the flange.
+  const Frame<double>& end = frames[j + 1 < arm.joint_count ? j + 2 : arm.joint_count + 1];
+  return dot(joint.axis, cross(minus(origin_of(end), joint.point), {g[0], g[1], g[2]}));
+}
+
+// The frames of the whole map: joint functions add to the coordinates, then the sag that belongs to where they put the arm.
+void reach(const Arm<double>& arm, const Estimate& estimate, bool functions, bool sag, const double* q,
+           const Vector3& flange_p_m, Reach& out) {
+  const Transmission& map = estimate.transmission;
+  out.q = q;
+  if (!functions && !sag) {
+    frames_at(arm, q, out);
+  } else {
+    Arm<double> moved = arm;
+    for (std::int32_t i = 0; functions && i < arm.joint_count; ++i) {
+      if (map.function[i].order_count == 0) continue;
+      double turn_rad = 0.0, slope = 0.0;
+      evaluate_joint_function(map.function[i], q[i], turn_rad, slope);
+      moved.link[i].theta_rad += turn_rad;
+    }
+    frames_at(moved, q, out);
+    if (sag) {
+      Arm<double> sagged = moved;
+      for (std::int32_t i = 0; i < arm.joint_count; ++i) {
+        for (std::int32_t j = i; j < arm.joint_count; ++j) {
+          const double k = map.gravity.compliance[i][j];
+          if (std::fabs(k) > 0.0) sagged.link[i].theta_rad += k * lever_m(arm, out.frames, map.gravity.direction, i, j);
+        }
+      }
+      frames_at(sagged, q, out);
+    }
+  }
+  out.base_p_m = transform(out.frames[arm.joint_count + 1], flange_p_m);
+}
+
+// How much each term turns its joint, per unit of its column [rad].
+template <class Put>
+void turns_of_terms(const Arm<double>& arm, const Estimate& estimate, const Reach& at, const Layout& layout, const Put& put) {
+  double c[max_joints][max_orders + 1];
+  double s[max_joints][max_orders + 1];
+  bool known[max_joints] = {};
+  for (const Term& term : layout.terms) {
+    const auto i = static_cast<std::size_t>(term.joint);
+    if (term.family == TermFamily::gravity) {
+      put(term, term.prior * lever_m(arm, at.frames, estimate.transmission.gravity.direction, term.joint, term.index));
+      continue;
+    }
+    if (!known[i]) {
+      known[i] = true;
+      const double r = at.q[i];
+      const double cos_r = std::cos(r), sin_r = std::sin(r);
+      c[i][0] = window_at(estimate.transmission.function[i], r);
+      s[i][0] = 0.0;
+      for (std::size_t k = 1; k <= max_orders; ++k) {
+        c[i][k] = c[i][k - 1] * cos_r - s[i][k - 1] * sin_r;
+        s[i][k] = s[i][k - 1] * cos_r + c[i][k - 1] * sin_r;
+      }
+    }
+    const auto k = static_cast<std::size_t>(term.index);
+    put(term, term.prior * (term.sine ? s[i][k] : c[i][k]));
+  }
 }
 
 // d(target position)/d(unknowns), tracker frame [mm per unit]: three rows of `stride`, added with factor `sign`.
@@ -90,6 +158,16 @@ void add_position_jacobian(const Arm<double>& arm, const Estimate& estimate, con
     for (double& component : direction) component *= 1e3 * parameter.prior;
     put(column++, rotate(estimate.tracker_T_base, direction));
   }
+  if (layout.terms.empty()) return;
+  Vector3 velocity[max_joints];
+  for (std::int32_t i = 0; i < arm.joint_count; ++i) {
+    const Screw screw = screw_of(arm, at.frames, {ParameterKey::theta, i});
+    velocity[i] = rotate(estimate.tracker_T_base, cross(screw.axis, minus(at.base_p_m, screw.point)));
+  }
+  turns_of_terms(arm, estimate, at, layout, [&](const Term& term, double turn_rad) {
+    const Vector3& v = velocity[term.joint];
+    put(column++, {1e3 * turn_rad * v[0], 1e3 * turn_rad * v[1], 1e3 * turn_rad * v[2]});
+  });
 }
 
 // d(rotation vector residual)/d(unknowns): the angular velocity through the inverse left Jacobian at the residual.
@@ -125,6 +203,11 @@ void add_rotation_jacobian(const Arm<double>& arm, const Estimate& estimate, con
     }
     ++column;
   }
+  turns_of_terms(arm, estimate, at, layout, [&](const Term& term, double turn_rad) {
+    Vector3 turn = rotate(estimate.tracker_T_base, screw_of(arm, at.frames, {ParameterKey::theta, term.joint}).axis);
+    for (double& component : turn) component *= turn_rad;
+    put(column++, turn);
+  });
 }
 
 }  // namespace
@@ -148,11 +231,15 @@ MeasurementModel::MeasurementModel(const Estimate& estimate) : estimate_(estimat
   if (make_arm(estimate.geometry, arm_) != Status::ok) {
     throw Refusal("The estimate left the valid range of a geometry: the measurements do not fit this robot.");
   }
+  for (std::int32_t i = 0; i < arm_.joint_count; ++i) {
+    has_functions_ = has_functions_ || estimate.transmission.function[i].order_count > 0;
+    for (const double k : estimate.transmission.gravity.compliance[i]) has_sag_ = has_sag_ || std::fabs(k) > 0.0;
+  }
 }
 
 Vector3 MeasurementModel::target_position(const double* q, std::size_t target) const {
   Reach at;
-  reach(arm_, q, estimate_.flange_p_m[target], at);
+  reach(arm_, estimate_, has_functions_, has_sag_, q, estimate_.flange_p_m[target], at);
   return transform(estimate_.tracker_T_base, at.base_p_m);
 }
 
@@ -171,7 +258,7 @@ std::size_t MeasurementModel::residual(const Dataset& data, std::size_t row, con
   }
   if (count == 0) return 0;
   Reach at;
-  reach(arm_, m.q.data(), estimate_.flange_p_m[m.target], at);
+  reach(arm_, estimate_, has_functions_, has_sag_, m.q.data(), estimate_.flange_p_m[m.target], at);
   const Vector3 here = transform(estimate_.tracker_T_base, at.base_p_m);
 
   if (m.kind == MeasurementKind::distance) {
@@ -182,7 +269,7 @@ std::size_t MeasurementModel::residual(const Dataset& data, std::size_t row, con
     if (!fixed_end) {
       const Measurement& end = data.rows[static_cast<std::size_t>(m.other_row)];
       other_target = end.target;
-      reach(arm_, end.q.data(), estimate_.flange_p_m[other_target], other);
+      reach(arm_, estimate_, has_functions_, has_sag_, end.q.data(), estimate_.flange_p_m[other_target], other);
       there = transform(estimate_.tracker_T_base, other.base_p_m);
     }
     const Vector3 span = minus(here, there);
@@ -243,15 +330,17 @@ Estimate moved(const Estimate& estimate, const Layout& layout, const double* ste
   for (const Parameter& parameter : layout.geometry) {
     set_value(out.geometry, parameter.id, value(estimate.geometry, parameter.id) + parameter.prior * step[column++]);
   }
+  for (const Term& term : layout.terms) add_value(out.transmission, term, term.prior * step[column++]);
   return out;
 }
 
 std::vector<double> deviation(const Estimate& estimate, const Layout& layout) {
   std::vector<double> out;
-  out.reserve(layout.geometry.size());
+  out.reserve(layout.geometry.size() + layout.terms.size());
   for (const Parameter& parameter : layout.geometry) {
     out.push_back((value(estimate.geometry, parameter.id) - parameter.nominal) / parameter.prior);
   }
+  for (const Term& term : layout.terms) out.push_back(value(estimate.transmission, term) / term.prior);
   return out;
 }
 

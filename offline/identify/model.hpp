@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "mdhcal/arm.hpp"
+#include "offline/identify/families/terms.hpp"
 #include "offline/identify/parameters.hpp"
 #include "offline/measure/dataset.hpp"
 
@@ -21,6 +22,7 @@ struct Estimate {
   /// How the probe that measures rotations is turned on the flange, one a target (its position is zero); the identity
   /// for targets beyond the end.
   std::vector<Frame<double>> flange_R_probe;
+  Transmission transmission{};  ///< joint functions and sag; zero: none
 };
 
 /// The turn of a target's probe.
@@ -28,20 +30,21 @@ Frame<double> probe_of(const Estimate& estimate, std::size_t target);
 
 /// Which unknowns there are and in which column each stands: base (rotation [mrad] about `pivot_m`, then translation
 /// [mm], both in the tracker frame), the targets (flange frame [mm]), the turns of their probes (about the flange's axes
-/// [mrad]), then the geometry, in units of the prior.
+/// [mrad]), then the geometry and the terms of the transmission, in units of the prior.
 struct Layout {
   bool base = true;
   bool target = true;
   std::size_t targets = 1;
   std::vector<std::size_t> probes;  ///< the targets whose probe's turn is fitted
   std::vector<Parameter> geometry;
+  std::vector<Term> terms;          ///< joint functions and sag, after the geometry, in units of their prior
   Vector3 pivot_m{};  ///< the point that a base rotation leaves in place, tracker frame
 
   std::size_t base_columns() const { return base ? 6 : 0; }
   std::size_t target_columns() const { return target ? 3 * targets : 0; }
   std::size_t probe_columns() const { return 3 * probes.size(); }
   std::size_t frame_columns() const { return base_columns() + target_columns() + probe_columns(); }  ///< unpenalised
-  std::size_t columns() const { return frame_columns() + geometry.size(); }
+  std::size_t columns() const { return frame_columns() + geometry.size() + terms.size(); }
 };
 
 /// The most scalar residuals of a row of measurements (a full pose).
@@ -73,12 +76,13 @@ class MeasurementModel {
  private:
   Estimate estimate_;
   Arm<double> arm_{};
+  bool has_functions_ = false, has_sag_ = false;
 };
 
 /// The estimate moved by `step` (layout.columns() numbers in the columns' units).
 Estimate moved(const Estimate& estimate, const Layout& layout, const double* step);
 
-/// The geometry's deviation from nominal in units of the prior, one number a parameter.
+/// The geometry's deviation from nominal, then the terms, in units of the prior: one number a parameter.
 std::vector<double> deviation(const Estimate& estimate, const Layout& layout);
 
 }  // namespace mdhcal::offline
