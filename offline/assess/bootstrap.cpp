@@ -15,6 +15,13 @@ namespace mdhcal::offline {
 
 namespace {
 
+// Joint functions and sag stay as they are found: what is drawn anew is the geometry.
+Layout geometry_of(const Calibration& c) {
+  Layout out = c.layout;
+  out.terms.clear();
+  return out;
+}
+
 // The weighted rows of one group, or their triangle where that is smaller.
 struct GroupRows {
   std::vector<double> row;       // unknowns, then the residual, one after another
@@ -25,7 +32,8 @@ std::vector<GroupRows> rows_by_group(const Calibration& c, double noise_mm) {
   const Dataset& data = c.training;
   const bool any_sigma = states_sigma(data);
   const MeasurementModel model(c.estimate);
-  const std::size_t n = c.layout.columns();
+  const Layout layout = geometry_of(c);
+  const std::size_t n = layout.columns();
   std::vector<std::int64_t> place(data.groups.size(), -1);
   std::vector<GroupRows> groups;
   std::vector<double> jacobian(max_row_residuals * n);
@@ -41,7 +49,7 @@ std::vector<GroupRows> rows_by_group(const Calibration& c, double noise_mm) {
     GroupRows& group = groups[static_cast<std::size_t>(at)];
     double residual[max_row_residuals];
     double scale[max_row_residuals];
-    const std::size_t count = model.residual(data, row, c.layout, residual, jacobian.data(), n);
+    const std::size_t count = model.residual(data, row, layout, residual, jacobian.data(), n);
     residual_scale(data, row, noise_mm, any_sigma, scale);
     for (std::size_t k = 0; k < count; ++k) {
       for (std::size_t column = 0; column < n; ++column) {
@@ -74,9 +82,10 @@ Bootstrap bootstrap(const Calibration& c, std::size_t resamples, std::uint64_t s
                     const std::function<void(std::size_t, std::size_t)>& progress) {
   const double noise_mm = c.noise_mm;
   const std::vector<GroupRows> groups = rows_by_group(c, noise_mm);
-  const std::size_t n = c.layout.columns();
-  const std::size_t parameters = c.layout.geometry.size();
-  const std::vector<double> now = deviation(c.estimate, c.layout);
+  const Layout layout = geometry_of(c);
+  const std::size_t n = layout.columns();
+  const std::size_t parameters = layout.geometry.size();
+  const std::vector<double> now = deviation(c.estimate, layout);
   const Eigen::VectorXd x0 = Eigen::Map<const Eigen::VectorXd>(now.data(), static_cast<Eigen::Index>(parameters));
   std::vector<std::vector<double>> drawn(parameters, std::vector<double>(resamples));
 
@@ -97,10 +106,10 @@ Bootstrap bootstrap(const Calibration& c, std::size_t resamples, std::uint64_t s
           triangle.add_row(row, row[n], weight);
         }
       }
-      const ReducedSystem system = reduce_frames(triangle.matrix(), c.layout.frame_columns(), triangle.row_count());
+      const ReducedSystem system = reduce_frames(triangle.matrix(), layout.frame_columns(), triangle.row_count());
       const Eigen::VectorXd x = penalised_problem(system, x0).solution(c.lambda.lambda);
       for (std::size_t p = 0; p < parameters; ++p) {
-        drawn[p][r] = x(static_cast<Eigen::Index>(p)) * c.layout.geometry[p].prior;
+        drawn[p][r] = x(static_cast<Eigen::Index>(p)) * layout.geometry[p].prior;
       }
       if (progress) progress(++done, resamples);
     }

@@ -30,6 +30,10 @@ void add_identification_options(CLI::App& command, CalibrationArguments& a) {
   command.add_option("--joints", a.joints, "Which joint columns to use, read or commanded; better: those read unless the commanded are clearly better")
       ->check(CLI::IsMember({"better", "read", "commanded"}))
       ->capture_default_str();
+  command.add_option("--model", a.options.model,
+                     "What is identified beside the geometry: gravity, joints (joint functions), full (both), geometry (nothing), or auto: what cross-validation chooses")
+      ->check(CLI::IsMember({"auto", "geometry", "gravity", "joints", "full"}))
+      ->capture_default_str();
   command.add_option("--noise", a.options.noise_mm, "Standard deviation of a measured coordinate [mm], default 0.02")
       ->check(CLI::PositiveNumber);
   command.add_option("--rotation-noise", a.options.rotation_noise_mrad,

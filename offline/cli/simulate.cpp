@@ -23,7 +23,7 @@ struct SimulateArguments {
   std::string robot, directory;
   SimulationOptions options;
   double length_error_mm = 0.5, angle_error_deg = 0.03, noise_mm = 0.02, rotation_noise_deg = 0.003;
-  double joint_noise_deg = 0, outlier_mm = 5;
+  double joint_noise_deg = 0, joint_function_mrad = 0, sag_mrad = 0, outlier_mm = 5;
 };
 
 std::string truth_json(const SimulateArguments& arguments, const Simulation& simulation) {
@@ -34,6 +34,8 @@ std::string truth_json(const SimulateArguments& arguments, const Simulation& sim
   json["noise_mm"] = arguments.noise_mm;
   json["rotation_noise_deg"] = arguments.rotation_noise_deg;
   json["joint_noise_deg"] = arguments.joint_noise_deg;
+  if (arguments.joint_function_mrad > 0) json["joint_function_mrad"] = arguments.joint_function_mrad;
+  if (arguments.sag_mrad > 0) json["sag_mrad"] = arguments.sag_mrad;
   json["outlier_mm"] = arguments.outlier_mm;
   json["outliers"] = nlohmann::ordered_json::array();
   for (const std::size_t index : simulation.outlier_rows) {
@@ -54,6 +56,8 @@ void run_simulate(SimulateArguments arguments) {
   options.noise_m = arguments.noise_mm * 1e-3;
   options.rotation_noise_rad = arguments.rotation_noise_deg * rad_per_deg;
   options.joint_noise_rad = arguments.joint_noise_deg * rad_per_deg;
+  options.joint_function_rad = arguments.joint_function_mrad * 1e-3;
+  options.sag_rad = arguments.sag_mrad * 1e-3;
   options.outlier_m = arguments.outlier_mm * 1e-3;
   OutputFolder folder(arguments.directory, {"robot.toml", "measurements.csv", "test.csv", "truth.toml", "truth.json"});
   const Simulation simulation = [&] {
@@ -97,6 +101,11 @@ void add_simulate(CLI::App& app) {
   command->add_option("--rotation-noise", arguments->rotation_noise_deg, "The same of a measured rotation [deg]")
       ->capture_default_str();
   command->add_option("--joint-noise", arguments->joint_noise_deg, "Standard deviation of a joint about its reading [deg]")
+      ->capture_default_str();
+  command->add_option("--joint-functions", arguments->joint_function_mrad,
+                      "Amplitude of every joint's periodic error on the orders 1, 2, 10, 18 and 28 [mrad]")
+      ->capture_default_str();
+  command->add_option("--sag", arguments->sag_mrad, "Sag of every joint under gravity when the arm is stretched out level [mrad]")
       ->capture_default_str();
   command->add_option("--outliers", options.outlier_fraction, "Fraction of gross errors among the measurements")
       ->capture_default_str();

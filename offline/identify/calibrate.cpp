@@ -12,6 +12,7 @@
 #include "offline/identify/copies.hpp"
 #include "offline/identify/covariance.hpp"
 #include "offline/identify/dependence.hpp"
+#include "offline/identify/families/family_model.hpp"
 #include "offline/identify/judging.hpp"
 #include "offline/identify/left_out.hpp"
 #include "offline/identify/pose_checks.hpp"
@@ -90,6 +91,7 @@ std::optional<std::array<double, 4>> turn_of(const Layout& layout, const Estimat
 Robot corrected_robot(const Robot& robot, const Estimate& estimate, const Layout& layout, const Dataset& data) {
   Robot out = robot;
   out.geometry = estimate.geometry;
+  out.transmission = estimate.transmission;
   out.tracker_T_base = pose_of(estimate.tracker_T_base);
   const bool unnamed = data.targets.size() <= 1 && (data.targets.empty() || data.targets.front().empty());
   if (unnamed) {
@@ -211,6 +213,7 @@ struct Work {
   Unknowns unknowns;
   Selection selection;
   RegularizedFit regularized;
+  FamilyModel families;
   bool penalised = false;
 };
 
@@ -239,6 +242,36 @@ void split(const Dataset& data, const Dataset* test, Work& work, Calibration& ou
   } else if (!work.testing.empty()) {
     out.testing = data;
   }
+}
+
+// What enters beside the geometry (--model).
+void identify_beyond_geometry(Work& work, Calibration& out) {
+  const CalibrationOptions& asked = work.options;
+  const bool by_likelihood = asked.method == "rpim" && rule_of(asked) == LambdaRule::marginal_likelihood;
+  out.parameters_used = static_cast<double>(out.layout.columns());
+  if (!by_likelihood && (asked.model == "auto" || asked.model == "geometry")) return;
+  if (!by_likelihood) throw InputError("--model " + asked.model + " needs the method rpim and the rule reml: the families' variances are chosen by the same likelihood.");
+  FamilyModelOptions options;
+  options.model = asked.model;
+  options.noise_mm = out.noise_mm;
+  options.robust = asked.robust;
+  options.leave_out = asked.cross_validate;
+  options.seed = asked.seed;
+  RegularizedFit& result = work.regularized;
+  work.families = identify_families(work.robot, out.training, work.selection, work.unknowns, result.fit, out.start, options);
+  out.model = work.families.report;
+  if (!out.model.sentence.empty()) out.notes.push_back(out.model.sentence);
+  out.notes.insert(out.notes.end(), out.model.left_out.begin(), out.model.left_out.end());
+  if (!work.families.beyond_geometry) return;
+  out.layout = work.families.layout;
+  out.lambda.lambda = work.families.lambda;
+  out.parameters_used = work.families.parameters_used;
+  out.converged = work.families.fit.converged;
+  out.iterations = work.families.fit.iterations;
+  result.fit = work.families.fit;
+  work.selection.robust_weight = work.families.robust_weight;
+  set_shared_error(out.training, work.unknowns.layout, result.fit.estimate, out.noise_mm, work.selection);
+  result.linearised = linearised(out.training, work.selection, work.unknowns.layout, result.fit.estimate, out.noise_mm);
 }
 
 // The nominal fit of base and targets, then the method.
@@ -284,8 +317,10 @@ void identify(Work& work, Calibration& out) {
     out.lambda.l_curve = points_of(result.corner.curve);
     if (result.corner.found) out.lambda.corner = result.corner.lambda;
     if (!result.choice.note.empty()) out.notes.push_back(result.choice.note);
+    identify_beyond_geometry(work, out);
     if (!out.converged) out.notes.push_back("The fit did not settle within its iteration bound.");
   } else {
+    if (work.options.model != "auto") identify_beyond_geometry(work, out);
     work.selection.robust_weight.clear();
     const MethodOutcome outcome = run_method(work.options.method, data, work.selection, out.layout, out.start, out.noise_mm);
     out.converged = outcome.converged;
@@ -317,11 +352,13 @@ void tell_parameters(const Work& work, Calibration& out) {
   const Dataset& data = out.training;
   const Linearised& at = work.regularized.linearised;
   const MeasurementModel model(out.estimate);
-  out.identifiability = identifiability(at.system, at.problem, out.layout, model, out.lambda.lambda, work.options.seed);
+  const Layout& layout = work.unknowns.layout;
+  out.identifiability = identifiability(at.system, at.problem, layout, model, out.lambda.lambda, work.options.seed);
   out.identifiability.before =
-      spectrum_of(linearised(data, work.selection, out.layout, out.start, out.noise_mm).system);
-  out.covariance = covariance_of(data, work.selection, out.layout, at.system, at.problem, work.regularized.fit,
-                                 out.lambda.lambda, out.noise_mm);
+      spectrum_of(linearised(data, work.selection, layout, out.start, out.noise_mm).system);
+  out.covariance = work.families.beyond_geometry
+                       ? work.families.covariance
+                       : covariance_of(data, work.selection, layout, at.system, at.problem, work.regularized.fit, out.lambda.lambda, out.noise_mm);
   const std::size_t frames = out.layout.frame_columns();
   for (std::size_t i = 0; i < out.layout.geometry.size(); ++i) {
     const Parameter& parameter = out.layout.geometry[i];
@@ -345,7 +382,9 @@ void tell_parameters(const Work& work, Calibration& out) {
 void judge(const Work& work, Calibration& out) {
   const Dataset& data = out.training;
   out.train = judge_training(work.regularized.fit, out);
-  if (work.penalised && work.options.cross_validate && work.selection.folds > 1) {
+  if (work.families.left_out) {
+    out.cross_validation = judge_left_out(*work.families.left_out, out);
+  } else if (!work.families.beyond_geometry && work.penalised && work.options.cross_validate && work.selection.folds > 1) {
     LeaveOutControl control;
     control.robust = work.options.robust;
     control.choose_lambda = rule_of(work.options) == LambdaRule::marginal_likelihood;
@@ -386,7 +425,7 @@ Calibration calibrate_once(const Robot& robot, const Dataset& data, const Calibr
   Calibration out;
   out.robot = robot;
   out.method = options.method;
-  Work work{robot, options, {}, {}, {}, {}, false};
+  Work work{robot, options, {}, {}, {}, {}, {}, false};
   split(data, test, work, out);
   identify(work, out);
   tell_parameters(work, out);

@@ -32,6 +32,7 @@ struct CalibrationOptions {
   std::optional<double> lambda;         ///< --lambda: no rule
   std::optional<double> rotation_noise_mrad;  ///< --rotation-noise: of a rotation about any axis; else it is estimated
   std::optional<double> noise_mm;       ///< --noise: standard deviation an axis where no sigma is stated; else 0.02
+  std::string model = "geometry";       ///< --model: auto, geometry, gravity, joints, full (with the method rpim)
   std::uint64_t seed = 1;
   double test_fraction = 0;             ///< --test-fraction, in [0, 1): of the groups, drawn by seed
   std::vector<std::uint32_t> held_out_groups; ///< or these groups of the dataset
@@ -127,6 +128,25 @@ struct PredictedAccuracy {
   double frames_median_mm = 0;                ///< of base and targets, if the geometry were known
 };
 
+/// Which families of parameters entered beside the geometry, and what else was tried.
+struct ModelReport {
+  std::string asked = "geometry";          ///< --model
+  struct Candidate {
+    std::string name;
+    double error_mm = 0;                   ///< cross-validated over whole poses of the training rows
+  };
+  std::vector<Candidate> candidates;       ///< the geometry alone first; none where there was nothing to choose
+  std::size_t chosen = 0;                  ///< index of a candidate; 0: the geometry alone
+  struct Family {
+    std::string name;
+    double sd = 0;                         ///< prior standard deviation that the measurements suggest
+    std::string unit;
+  };
+  std::vector<Family> families;            ///< of the candidate chosen, if it is not the geometry alone
+  std::string sentence;                    ///< what was chosen, and why; empty without candidates
+  std::vector<std::string> left_out;       ///< what could not enter, a sentence each
+};
+
 /// A zero that --rezero moved into the nominal geometry.
 struct ZeroOffset {
   std::int32_t link = 0;          ///< index of the link, from 0
@@ -153,6 +173,8 @@ struct Calibration {
   SharedError shared;             ///< of the rows of one pose
   double independent_share = 1;   ///< of the training rows, for what is shared (shared_error.hpp)
   double outlier_threshold_mm = 0;///< error norm of a training row's position beyond which it is an outlier
+  ModelReport model;
+  double parameters_used = 0;     ///< degrees of freedom of all unknowns, those of base and targets among them
   PredictedAccuracy accuracy;
   std::vector<ZeroOffset> zeros;  ///< what --rezero moved
   std::vector<Dependence> dependences;

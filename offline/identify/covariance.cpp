@@ -133,7 +133,10 @@ double predicted_position_sd_mm(const MeasurementModel& model, const Layout& lay
   for (std::size_t k = 0; k < 3; ++k) {
     double variance = 0.0;
     for (std::size_t i = 0; i < n; ++i) {
-      for (std::size_t j = 0; j < n; ++j) variance += jacobian[k * n + i] * covariance.at(i, j) * jacobian[k * n + j];
+      const double* row = covariance.value.data() + i * n;
+      double sum = 0.0;
+      for (std::size_t j = 0; j < n; ++j) sum += row[j] * jacobian[k * n + j];
+      variance += jacobian[k * n + i] * sum;
     }
     if (axes_mm != nullptr) axes_mm[k] = std::sqrt(std::max(0.0, variance));
     trace += std::max(0.0, variance);

@@ -53,7 +53,7 @@ Dependence regress(const Calibration& c, Sample sample, Eigen::Index effects, do
     q -= mean;
     spread += q * q;
   }
-  const double freedom = share * 3.0 * n - static_cast<double>(effects) - static_cast<double>(c.layout.columns());
+  const double freedom = share * 3.0 * n - static_cast<double>(effects) - c.parameters_used;
   if (!(spread > 0.0) || freedom < 3.0) return out;
   const auto rows = static_cast<Eigen::Index>(3 * out.count);
   Eigen::MatrixXd a(rows, effects);

@@ -55,7 +55,7 @@ std::string note_of(const std::vector<WeakDirection>& weak) {
 void add_standing_notes(const Dataset& data, Calibration& c) {
   std::size_t scalars = 0;
   for (std::size_t row : c.training_rows) scalars += residual_count(data.rows[row].kind);
-  const std::size_t unknowns = c.layout.columns();
+  const std::size_t unknowns = c.layout.frame_columns() + c.layout.geometry.size();
   if (scalars < unknowns) {
     c.notes.push_back("There are fewer scalar measurements (" + std::to_string(scalars) + ") than unknowns (" +
                       std::to_string(unknowns) + "): the penalty decides what the measurements leave open.");
@@ -92,9 +92,11 @@ void add_standing_notes(const Dataset& data, Calibration& c) {
   }
   const std::vector<std::string> findings = findings_of(c);
   c.notes.insert(c.notes.end(), findings.begin(), findings.end());
-  c.notes.push_back(
-      "Compliance, backlash and thermal drift are in no parameter: they stay in the residual, and the intervals cover "
-      "the geometry only.");
+  c.notes.push_back(c.model.chosen == 0
+      ? "Compliance, backlash and thermal drift are in no parameter: they stay in the residual, and the intervals cover "
+        "the geometry only."
+      : "Backlash and thermal drift are in no parameter: they stay in the residual. Outside the readings, the workspace and the "
+        "lean that were measured nothing vouches for joint functions and sag.");
 }
 
 }  // namespace mdhcal::offline

@@ -42,6 +42,7 @@ Unknowns choose_unknowns(const Robot& robot, const Dataset& data, const std::vec
   unknowns.parameters = choose_parameters(robot, gauge, options.parameters);
 
   unknowns.nominal.geometry = robot.geometry;
+  unknowns.nominal.transmission = robot.transmission;
   if (robot.tracker_T_base) unknowns.nominal.tracker_T_base = frame_of(*robot.tracker_T_base);
   for (const std::string& word : data.targets.empty() ? std::vector<std::string>{""} : data.targets) {
     const TargetPoint target = nominal_target(robot, word);

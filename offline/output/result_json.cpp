@@ -147,6 +147,43 @@ Json frame(const Frame<double>& f) {
 
 Json residual_json(const Residual& r) { return {{"scale_mm", finite(r.scale_mm)}, {"mean_mm", finite(r.mean_mm)}}; }
 
+Json model_json(const ModelReport& m) {
+  Json json = {{"asked", m.asked}, {"chosen", m.candidates.empty() ? "geometry alone" : m.candidates[m.chosen].name}};
+  json["families"] = Json::array();
+  for (const ModelReport::Family& f : m.families) json["families"].push_back({{"name", f.name}, {"prior_sd", finite(f.sd)}, {"unit", f.unit}});
+  json["candidates"] = Json::array();
+  for (const ModelReport::Candidate& c : m.candidates) {
+    json["candidates"].push_back({{"name", c.name}, {"cross_validated_mean_mm", finite(c.error_mm)}});
+  }
+  json["left_out"] = m.left_out;
+  return json;
+}
+
+// Joint functions and sag as they are used.
+Json transmission_json(const Robot& robot) {
+  const Transmission& t = robot.transmission;
+  Json json = {{"joint_functions", Json::array()}, {"sag", Json::array()}};
+  for (std::int32_t i = 0; i < robot.geometry.joint_count; ++i) {
+    const JointFunction& f = t.function[i];
+    if (f.order_count > 0) {
+      Json cosine = Json::array(), sine = Json::array();
+      for (std::int32_t k = 0; k < f.order_count; ++k) {
+        cosine.push_back(1e3 * static_cast<double>(f.cosine_rad[k]));
+        sine.push_back(1e3 * static_cast<double>(f.sine_rad[k]));
+      }
+      json["joint_functions"].push_back({{"joint", i + 1},
+                                         {"range_deg", {finite(f.seen_min_rad * deg_per_rad), finite(f.seen_max_rad * deg_per_rad)}},
+                                         {"cosine_mrad", cosine},
+                                         {"sine_mrad", sine}});
+    }
+    for (std::int32_t j = i; j < robot.geometry.joint_count; ++j) {
+      const double k = t.gravity.compliance[i][j];
+      if (std::fabs(k) > 0.0) json["sag"].push_back({{"joint", i + 1}, {"link", j + 1}, {"compliance_mrad_per_m", finite(1e3 * k)}});
+    }
+  }
+  return json;
+}
+
 Json diagnosis_json(const Diagnosis& d) {
   Json json = {{"named", d.named()}, {"sentence", d.sentence}, {"tried", d.tried}, {"as_given", residual_json(d.as_given)}};
   json["hypotheses"] = Json::array();
@@ -187,6 +224,8 @@ std::string result_json(const Calibration& c, const Assessment& assessment) {
     json["rotation_sigma_mrad"] = finite(1e3 * c.covariance.sigma * c.residual_unit_mm / c.training.rotation_lever_mm);
   }
   json["lambda"] = lambda(c.lambda);
+  json["model"] = model_json(c.model);
+  json["transmission"] = transmission_json(c.corrected);
   json["parameters"] = Json::array();
   for (const EstimatedParameter& p : c.parameters) json["parameters"].push_back(parameter(p));
   json["tracker_T_base"] = frame(c.estimate.tracker_T_base);

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "mdhcal/geometry.hpp"
+#include "mdhcal/transmission.hpp"
 
 namespace mdhcal::offline {
 
@@ -47,6 +47,11 @@ struct Robot {
   std::optional<std::array<double, 4>> tool_quaternion;  ///< [tool]: the turn of its probe, as TargetPoint's
   std::optional<Pose<double>> tracker_T_base;      ///< [base]
   std::vector<TargetPoint> targets;                ///< [[target]]
+
+  /// [gravity]: where things fall, a unit vector in the base frame; straight down if the file does not say.
+  Vector3 gravity_direction{0, 0, -1};
+  /// Joint functions, sag and payload of the corrected arm ([[joint_function]], [[sag]], [payload]); the nominal arm has none.
+  Transmission transmission{};
 
   /// [prior]: prior standard deviation of single parameters, by name ("alpha2", "d5", ...) [rad] or [m].
   std::map<std::string, double> prior;

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: MIT
+#include <cmath>
+#include <cstdio>
 #include <cstring>
 
 #include "offline/robot/robot.hpp"
@@ -57,6 +59,7 @@ class Writer {
       line("xyz", array_of(target.flange_p_m, length_));
       if (target.quaternion) write_rotation(*target.quaternion);
     }
+    write_transmission();
     if (!robot_.prior.empty()) text_ += "[prior]\n";
     for (const auto& [name, sd] : robot_.prior) {
       const bool is_length = name[0] == 'd' || name.find_first_of("0123456789") == 1;
@@ -109,6 +112,58 @@ class Writer {
     text_ += '[' + section + "]\n";
     line("xyz", array_of(pose.position_m, length_));
     write_rotation({pose.quaternion[0], pose.quaternion[1], pose.quaternion[2], pose.quaternion[3]});
+  }
+
+  void write_transmission() {
+    const Gravity& gravity = robot_.transmission.gravity;
+    const Vector3& down = robot_.gravity_direction;
+    const bool has_sag = std::abs(gravity.direction[0]) > 0 || std::abs(gravity.direction[1]) > 0 || std::abs(gravity.direction[2]) > 0;
+    const bool as_default = !(std::abs(down[0]) > 0) && !(std::abs(down[1]) > 0) && down[2] < 0;
+    if (has_sag || !as_default) {
+      text_ += "[gravity]\n";
+      line("xyz", array_of(down, plain_number));
+    }
+    const double* com = gravity.payload_com_m;
+    if (gravity.payload_kg > 0 || std::abs(com[0]) > 0 || std::abs(com[1]) > 0 || std::abs(com[2]) > 0) {
+      text_ += "[payload]\n";
+      line("mass_kg", shortest_decimal(gravity.payload_kg));
+      line("com", array_of(gravity.payload_com_m, length_));
+    }
+    const auto count = static_cast<std::size_t>(robot_.geometry.joint_count);
+    for (std::size_t i = 0; i < count; ++i) write_function(i);
+    for (std::size_t i = 0; i < count; ++i) {
+      for (std::size_t j = i; j < count; ++j) {
+        if (!(std::abs(gravity.compliance[i][j]) > 0)) continue;
+        text_ += "[[sag]]\n";
+        line("joint", std::to_string(i + 1));
+        line("link", std::to_string(j + 1));
+        line("compliance_rad_per_m", shortest_decimal(gravity.compliance[i][j]));
+      }
+      if (!(std::abs(gravity.payload_compliance[i]) > 0)) continue;
+      text_ += "[[sag]]\n";
+      line("joint", std::to_string(i + 1));
+      line("payload_compliance_rad_per_kg_m", shortest_decimal(gravity.payload_compliance[i]));
+    }
+  }
+
+  // Coefficients are float: nine digits of one read back as its bits whatever the unit.
+  void write_function(std::size_t i) {
+    const JointFunction& function = robot_.transmission.function[i];
+    if (!(function.seen_max_rad > function.seen_min_rad)) return;
+    text_ += "[[joint_function]]\n";
+    line("joint", std::to_string(i + 1));
+    line("range", array_of(std::array<double, 2>{function.seen_min_rad, function.seen_max_rad}, angle_));
+    const auto list = [&](const float* coefficients) {
+      std::string out = "[";
+      for (std::int32_t k = 0; k < function.order_count; ++k) {
+        char word[32];
+        std::snprintf(word, sizeof word, "%s%.9e", k > 0 ? ", " : "", angle_.from_si(static_cast<double>(coefficients[k])));
+        out += word;
+      }
+      return out + ']';
+    };
+    line("cosine", list(function.cosine_rad));
+    line("sine", list(function.sine_rad));
   }
 
   // The rotation vector where it leads back to the same bits, else the quaternion itself.

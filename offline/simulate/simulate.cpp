@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <vector>
 
 #include <Eigen/Geometry>
 
@@ -11,6 +12,7 @@
 #include "offline/base/error.hpp"
 #include "offline/base/random.hpp"
 #include "offline/robot/units.hpp"
+#include "offline/simulate/transmission.hpp"
 
 namespace mdhcal::offline {
 
@@ -27,7 +29,7 @@ void check_options(const SimulationOptions& options) {
   require(options.repeats >= 1, "a simulation needs at least 1 repeat of each configuration");
   require(options.targets >= 1 && options.targets <= 8, "a simulation has 1 to 8 targets");
   for (const double value : {options.length_error_m, options.angle_error_rad, options.noise_m,
-                             options.rotation_noise_rad, options.joint_noise_rad, options.outlier_m}) {
+                             options.rotation_noise_rad, options.joint_noise_rad, options.joint_function_rad, options.sag_rad, options.outlier_m}) {
     require(std::isfinite(value) && value >= 0, "a simulation's standard deviations are finite and not negative");
   }
   require(options.outlier_fraction >= 0 && options.outlier_fraction < 1, "the fraction of outliers lies in [0, 1)");
@@ -109,6 +111,104 @@ Pose<double> random_base(Random& random) {
   return pose;
 }
 
+// Origin and axis of every joint, then the flange's origin, by products of Eigen's transforms.
+struct Axes {
+  std::vector<Eigen::Vector3d> origin, axis;
+};
+
+Axes axes_at(const Geometry& g, const Joints& coordinate) {
+  const Eigen::Vector3d x = Eigen::Vector3d::UnitX(), y = Eigen::Vector3d::UnitY(), z = Eigen::Vector3d::UnitZ();
+  Axes out;
+  Eigen::Isometry3d at = Eigen::Isometry3d::Identity();
+  for (std::size_t i = 0; i < static_cast<std::size_t>(g.joint_count); ++i) {
+    const Link& link = g.link[i];
+    const bool turns = g.joint[i].kind == JointKind::revolute;
+    at = at * Eigen::AngleAxisd(link.alpha_rad, x) * Eigen::Translation3d(link.a_m * x);
+    out.axis.push_back(at.linear() * z);
+    at = at * Eigen::AngleAxisd(link.theta_rad + (turns ? coordinate[i] : 0.0), z) *
+         Eigen::Translation3d((link.d_m + (turns ? 0.0 : coordinate[i])) * z) * Eigen::AngleAxisd(link.beta_rad, y);
+    out.origin.push_back(at.translation());
+  }
+  const double* p = g.last_T_flange.position_m;
+  out.origin.push_back(at * Eigen::Vector3d(p[0], p[1], p[2]));
+  return out;
+}
+
+double length_to_end(const Geometry& g, std::size_t from, std::size_t to) {
+  double length = 0.0;
+  for (std::size_t j = from + 1; j <= to; ++j) length += std::hypot(g.link[j].a_m, g.link[j].d_m);
+  return length;
+}
+
+}  // namespace
+
+void add_transmission(Robot& truth, double amplitude_rad, double sag_rad, Random& random) {
+  const Geometry& g = truth.geometry;
+  const auto count = static_cast<std::size_t>(g.joint_count);
+  for (std::size_t i = 0; i < count && amplitude_rad > 0; ++i) {
+    if (g.joint[i].kind != JointKind::revolute) continue;
+    JointFunction& f = truth.transmission.function[i];
+    f.seen_min_rad = -std::numbers::pi;
+    f.seen_max_rad = std::numbers::pi;
+    f.order_count = 28;
+    for (const int order : {1, 2, 10, 18, 28}) {
+      const double phase = random.uniform(-std::numbers::pi, std::numbers::pi);
+      f.cosine_rad[order - 1] = static_cast<float>(amplitude_rad * std::cos(phase));
+      f.sine_rad[order - 1] = static_cast<float>(amplitude_rad * std::sin(phase));
+    }
+  }
+  if (!(sag_rad > 0)) return;
+  Gravity& gravity = truth.transmission.gravity;
+  std::copy(truth.gravity_direction.begin(), truth.gravity_direction.end(), gravity.direction);
+  for (std::size_t i = 0; i < count; ++i) {
+    if (g.joint[i].kind != JointKind::revolute) continue;
+    double torque = 0.0;
+    for (std::size_t j = i; j + 1 < count; ++j) {
+      gravity.compliance[i][j] = random.uniform(0.5, 1.5);
+      torque += gravity.compliance[i][j] * length_to_end(g, i, j + 1);
+    }
+    for (double& k : gravity.compliance[i]) k *= torque > 0.0 ? sag_rad / torque : 0.0;
+  }
+}
+
+Joints turns_of(const Robot& truth, const Joints& q) {
+  const Geometry& g = truth.geometry;
+  const Transmission& t = truth.transmission;
+  const auto count = static_cast<std::size_t>(g.joint_count);
+  Joints turn{};
+  Joints coordinate{};
+  for (std::size_t i = 0; i < count; ++i) {
+    coordinate[i] = g.joint[i].sign * q[i];
+    for (std::size_t j = 0; j < count; ++j) coordinate[i] += g.joint[i].coupling[j] * q[j];
+    for (std::int32_t k = 0; k < t.function[i].order_count; ++k) {
+      turn[i] += static_cast<double>(t.function[i].cosine_rad[k]) * std::cos((k + 1) * q[i]) +
+                 static_cast<double>(t.function[i].sine_rad[k]) * std::sin((k + 1) * q[i]);
+    }
+    coordinate[i] += turn[i];
+  }
+  const Eigen::Vector3d down(t.gravity.direction[0], t.gravity.direction[1], t.gravity.direction[2]);
+  if (!(down.norm() > 0)) return turn;
+  const Axes at = axes_at(g, coordinate);
+  for (std::size_t i = 0; i < count; ++i) {
+    for (std::size_t j = i; j < count; ++j) {
+      turn[i] += t.gravity.compliance[i][j] * at.axis[i].dot((at.origin[j + 1] - at.origin[i]).cross(down));
+    }
+  }
+  return turn;
+}
+
+namespace {
+
+// The arm with its joints turned by their functions and their sag at the readings q.
+Arm<double> turned_arm(const Robot& truth, const Joints& q) {
+  Geometry geometry = truth.geometry;
+  const Joints turn = turns_of(truth, q);
+  for (std::size_t i = 0; i < static_cast<std::size_t>(geometry.joint_count); ++i) geometry.link[i].theta_rad += turn[i];
+  Arm<double> arm{};
+  if (make_arm(geometry, arm) != Status::ok) throw InputError("the simulated joint functions take the geometry out of the valid range");
+  return arm;
+}
+
 // Measures `configurations` random configurations of the true robot.
 Dataset measure(const Robot& truth, const Arm<double>& arm, std::size_t configurations,
                 const SimulationOptions& options, const std::string& name, Random& random,
@@ -119,17 +219,19 @@ Dataset measure(const Robot& truth, const Arm<double>& arm, std::size_t configur
   for (const TargetPoint& target : truth.targets) set.targets.push_back(target.name);
   const Pose<double>& base = *truth.tracker_T_base;
   const bool grouped = options.repeats > 1 || options.targets > 1;
+  const bool with_terms = options.joint_function_rad > 0 || options.sag_rad > 0;
   std::size_t visit = 0;
   for (std::size_t c = 0; c < configurations; ++c) {
     step();
-    const auto q = random_readings(truth.geometry, random);
+    const Joints q = random_readings(truth.geometry, random);
     for (std::size_t r = 0; r < options.repeats; ++r) {
       ++visit;
       if (grouped ? r == 0 : true) set.groups.push_back(std::to_string(c + 1));
       auto actual = q;
       for (std::size_t i = 0; i < set.joint_count; ++i) actual[i] += options.joint_noise_rad * random.normal();
+      const Arm<double> turned = with_terms ? turned_arm(truth, actual) : arm;
       Pose<double> base_T_flange{};
-      if (forward(arm, actual.data(), base_T_flange) != Status::ok) {
+      if (forward(turned, actual.data(), base_T_flange) != Status::ok) {
         throw InputError("the simulated robot has joint limits beyond the valid range of a reading");
       }
       for (std::size_t t = 0; t < truth.targets.size(); ++t) {
@@ -197,6 +299,12 @@ Simulation simulate(const Robot& robot, const SimulationOptions& options,
   result.truth = result.nominal;
   add_errors(result.truth.geometry, options, random);
   result.truth.targets = points;
+  if (options.joint_function_rad > 0 || options.sag_rad > 0) {
+    add_transmission(result.truth, options.joint_function_rad, options.sag_rad, random);
+    if (check_transmission(result.truth.geometry, result.truth.transmission) != Status::ok) {
+      throw InputError("the joint functions or the sag asked for are beyond what a controller accepts (5 mrad and a slope of 0.1, 20 mrad)");
+    }
+  }
   for (TargetPoint& target : result.truth.targets) {
     for (double& coordinate : target.flange_p_m) coordinate += options.length_error_m * random.normal();
   }

@@ -26,6 +26,8 @@ struct SimulationOptions {
   double noise_m = 0.02e-3;              ///< of the measured positions, each axis [m]
   double rotation_noise_rad = 0.05e-3;   ///< of the measured rotations, each axis [rad] (full_pose only)
   double joint_noise_rad = 0;            ///< of what a joint does about what it reads [rad] (prismatic: [m])
+  double joint_function_rad = 0;         ///< amplitude of every joint's function on the orders 1, 2, 10, 18 and 28 [rad]
+  double sag_rad = 0;                    ///< of every joint when the arm is stretched out level [rad]
   double outlier_fraction = 0;           ///< of the training rows, in [0, 1)
   double outlier_m = 5e-3;               ///< length of an outlier's error, in a random direction [m]
 

@@ -78,7 +78,7 @@ Outcome run(const Robot& robot, const Dataset& data, const std::vector<std::size
   selection.robust_weight = c.robust_weight;
   const FamilyRows rows = family_rows(c.training, selection, layout, at, 0.02);
   FamilyFitControl control;
-  const FamilyComparison comparison = compare_families(rows, candidates_for(rows.poses, true, true), control, 1);
+  const FamilyComparison comparison = compare_families(rows, candidates_for(rows.poses, true), control, 1);
   out.time_families = seconds() - t;
   out.chosen = comparison.chosen;
   for (const FamilyCandidate& candidate : comparison.candidates) {

@@ -200,6 +200,54 @@ TEST(RobotFile, WritingAndReadingGivesTheSameBits) {
 }
 
 // toml++ is undefined on these (offline/robot/toml_text.hpp).
+// What stands beside the geometry of a corrected robot: read, written and read again to the same bits, in either unit.
+TEST(RobotFile, JointFunctionsSagAndPayloadKeepTheirBits) {
+  for (const bool in_deg : {true, false}) {
+    Robot robot = parse_robot(one_link + one_link + "[gravity]\nxyz = [0, 0.6, -0.8]\n[payload]\nmass_kg = 2.5\ncom = [1.0, 2.0, 30.1]\n", "robot.toml");
+    EXPECT_EQ(robot.gravity_direction, (Vector3{0, 0.6, -0.8}));
+    EXPECT_EQ(robot.transmission.gravity.payload_kg, 2.5);
+    robot.angle_in_deg = in_deg;
+    std::mt19937_64 engine(3);
+    std::uniform_real_distribution<double> uniform(-1, 1);
+    for (int joint = 0; joint < 2; ++joint) {
+      JointFunction& f = robot.transmission.function[joint];
+      f.seen_min_rad = -2.5;
+      f.seen_max_rad = 1.25;
+      f.order_count = joint == 0 ? 40 : 1;
+      for (int k = 0; k < f.order_count; ++k) {
+        f.cosine_rad[k] = static_cast<float>(3e-5 * uniform(engine));
+        f.sine_rad[k] = static_cast<float>(3e-5 * uniform(engine));
+      }
+    }
+    Gravity& gravity = robot.transmission.gravity;
+    for (int k = 0; k < 3; ++k) gravity.direction[k] = robot.gravity_direction[static_cast<std::size_t>(k)];
+    gravity.compliance[0][1] = 1e-3 / 3;
+    gravity.payload_compliance[1] = 1e-5 / 3;
+    const Robot once = parse_robot(write_robot(robot), "robot.toml");
+    const Robot twice = parse_robot(write_robot(once), "robot.toml");
+    EXPECT_EQ(std::memcmp(&once.transmission, &twice.transmission, sizeof once.transmission), 0);
+    for (int joint = 0; joint < 2; ++joint) {
+      const JointFunction& was = robot.transmission.function[joint];
+      const JointFunction& is = once.transmission.function[joint];
+      EXPECT_EQ(std::memcmp(was.cosine_rad, is.cosine_rad, sizeof was.cosine_rad), 0);
+      EXPECT_EQ(std::memcmp(was.sine_rad, is.sine_rad, sizeof was.sine_rad), 0);
+    }
+    EXPECT_EQ(std::memcmp(&robot.transmission.gravity, &once.transmission.gravity, sizeof gravity), 0);
+  }
+}
+
+TEST(RobotFile, WrongJointFunctionsSagAndGravityAreRefusedByName) {
+  const std::string two = one_link + one_link;
+  EXPECT_NE(message_of(two + "[gravity]\nxyz = [0, 0, 0]\n").find("a direction of gravity of length zero"), std::string::npos);
+  EXPECT_NE(message_of(two + "[payload]\nmass_kg = -1\n").find("expected a mass that is not negative"), std::string::npos);
+  EXPECT_NE(message_of(two + "[[sag]]\njoint = 2\nlink = 1\ncompliance_rad_per_m = 0.001\n").find("expected link >= joint"), std::string::npos);
+  EXPECT_NE(message_of(two + "[[sag]]\njoint = 1\nlink = 1\n").find("needs either"), std::string::npos);
+  EXPECT_NE(message_of(two + "[[joint_function]]\njoint = 1\nrange = [10.0, 5.0]\ncosine = []\nsine = []\n").find("do not rise"), std::string::npos);
+  EXPECT_NE(message_of(two + "[[joint_function]]\njoint = 1\nrange = [0.0, 50.0]\ncosine = [0.1]\nsine = []\n").find("not as many sines"), std::string::npos);
+  EXPECT_NE(message_of(two + "[[joint_function]]\njoint = 1\nrange = [0.0, 50.0]\ncosine = [5.0]\nsine = [0.0]\n").find("beyond what a controller accepts"),
+            std::string::npos);
+}
+
 TEST(RobotFile, CharactersOutsideAsciiBelongInQuotesAndComments) {
   const std::string link = "[[link]]\nalpha = 0\na = 0\nd = 1\ntheta = 0\n";
   for (const std::string good : {"# Ï ﻀ\n", "name = \"Ï \\\" Ï\"\n", "name = 'Ï'\n", "name = \"\"\"Ï\"Ï\"\"\"\" # Ï\n",

@@ -13,16 +13,6 @@ namespace {
 
 constexpr std::uint32_t fold_count = 5;
 
-std::vector<std::uint32_t> folds_of(const FamilyRows& rows, std::uint32_t folds, std::uint64_t seed) {
-  std::vector<std::uint32_t> order(rows.poses);
-  std::iota(order.begin(), order.end(), 0U);
-  Random random(seed);
-  for (std::size_t i = order.size(); i > 1; --i) std::swap(order[i - 1], order[random.index(i)]);
-  std::vector<std::uint32_t> out;
-  for (const Cell& cell : rows.cells) out.push_back(order[cell.pose] % folds);
-  return out;
-}
-
 double position_error_mm(const Cell& cell, const Eigen::VectorXd& left) {
   double squares = 0.0;
   for (Eigen::Index k = 0; k < std::min<Eigen::Index>(cell.count, 3); ++k) {
@@ -51,25 +41,35 @@ double left_out_error_mm(const FamilyRows& rows, const std::vector<std::uint32_t
 
 }  // namespace
 
-std::vector<FamilyChoice> candidates_for(std::size_t poses, bool gravity, bool functions) {
+std::vector<FamilyChoice> candidates_for(std::size_t poses, bool functions) {
   std::vector<FamilyChoice> out{{}};
-  if (poses >= 12) {
-    if (functions) out.push_back({false, 1});
-    if (gravity) out.push_back({true, 0});
-    if (gravity && functions) out.push_back({true, 1});
-  }
-  if (poses >= 16 && functions) {
-    out.push_back({false, max_orders});
-    if (gravity) out.push_back({true, max_orders});
-  }
+  if (poses < 12) return out;
+  if (functions) out.push_back({false, 1});
+  out.push_back({true, 0});
+  if (functions) out.push_back({true, 1});
+  if (poses < 16 || !functions) return out;
+  out.push_back({false, static_cast<std::int32_t>(max_orders)});
+  out.push_back({true, static_cast<std::int32_t>(max_orders)});
   return out;
+}
+
+std::vector<std::uint32_t> family_folds(std::size_t poses, std::uint64_t seed, std::uint32_t& folds) {
+  folds = fold_count;
+  std::vector<std::uint32_t> order(poses);
+  std::iota(order.begin(), order.end(), 0U);
+  Random random(seed);
+  for (std::size_t i = order.size(); i > 1; --i) std::swap(order[i - 1], order[random.index(i)]);
+  for (std::uint32_t& each : order) each %= folds;
+  return order;
 }
 
 FamilyComparison compare_families(const FamilyRows& rows, const std::vector<FamilyChoice>& candidates, const FamilyFitControl& control,
                                   std::uint64_t seed) {
   FamilyComparison out;
-  out.folds = fold_count;
-  out.fold = folds_of(rows, out.folds, seed);
+  std::uint32_t folds = 0;
+  const std::vector<std::uint32_t> of_pose = family_folds(rows.poses, seed, folds);
+  std::vector<std::uint32_t> fold;  // of each cell
+  for (const Cell& cell : rows.cells) fold.push_back(of_pose[cell.pose]);
   for (const FamilyChoice& choice : candidates) {
     FamilyCandidate candidate;
     candidate.choice = choice;
@@ -86,12 +86,12 @@ FamilyComparison compare_families(const FamilyRows& rows, const std::vector<Fami
     whole.rounds = 8;
     whole.steps = 4;
     candidate.fit = fit_families(rows, {}, choice, start, whole);
-    for (std::uint32_t f = 0; f < out.folds; ++f) {
+    for (std::uint32_t f = 0; f < folds; ++f) {
       std::vector<bool> use;
-      for (const std::uint32_t each : out.fold) use.push_back(each != f);
+      for (const std::uint32_t each : fold) use.push_back(each != f);
       candidate.folds.push_back(fit_families(rows, use, choice, candidate.fit, control));
     }
-    candidate.error_mm = left_out_error_mm(rows, out.fold, candidate.folds);
+    candidate.error_mm = left_out_error_mm(rows, fold, candidate.folds);
     out.candidates.push_back(std::move(candidate));
   }
   // Geometry unless another gains a tenth; all orders only if they gain a twentieth more than the best without them. The

@@ -20,12 +20,14 @@ struct FamilyCandidate {
 struct FamilyComparison {
   std::vector<FamilyCandidate> candidates;  ///< geometry first
   std::size_t chosen = 0;
-  std::vector<std::uint32_t> fold;          ///< one a cell
-  std::uint32_t folds = 0;
 };
 
-/// The candidates that so many poses can carry.
-std::vector<FamilyChoice> candidates_for(std::size_t poses, bool gravity, bool functions);
+/// The candidates that so many poses can carry: beside the geometry from 12 poses on (5 folds then leave two or three poses out),
+/// all orders from 16; `functions`: whether a joint moved enough for one.
+std::vector<FamilyChoice> candidates_for(std::size_t poses, bool functions);
+
+/// The fold of each pose, drawn by `seed`; `folds` receives their number.
+std::vector<std::uint32_t> family_folds(std::size_t poses, std::uint64_t seed, std::uint32_t& folds);
 
 /// Fits every candidate on all rows and without each of five folds of poses, and chooses.
 FamilyComparison compare_families(const FamilyRows& rows, const std::vector<FamilyChoice>& candidates, const FamilyFitControl& control,
