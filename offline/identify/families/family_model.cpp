@@ -63,13 +63,13 @@ Layout terms_of(const Layout& all, const FamilyChoice& choice) {
   return out;
 }
 
-// Functions that take no part state no readings either.
-void keep_functions(Estimate& at, const Layout& layout) {
+// Functions that take no part are as the robot file has them.
+void keep_functions(Estimate& at, const Estimate& stated, const Layout& layout) {
   for (std::size_t i = 0; i < max_joints; ++i) {
     const bool used = std::any_of(layout.terms.begin(), layout.terms.end(), [&](const Term& term) {
       return term.family != TermFamily::gravity && static_cast<std::size_t>(term.joint) == i;
     });
-    if (!used) at.transmission.function[i] = JointFunction{};
+    if (!used) at.transmission.function[i] = stated.transmission.function[i];
   }
 }
 
@@ -223,7 +223,8 @@ FamilyModel identify_families(const Robot& robot, const Dataset& data, const Sel
   // Base, targets, geometry and terms together, linearised anew where the first fit has led.
   const FamilyCandidate& chosen = comparison.candidates[out.report.chosen];
   out.layout = terms_of(all, chosen.choice);
-  keep_functions(at, out.layout);
+  keep_functions(at, geometry.estimate, out.layout);
+  if (!chosen.choice.gravity) at.transmission.gravity = geometry.estimate.transmission.gravity;
   const Selection most = thinned(data, selection, poses_to_identify);
   const bool some = most.rows.size() < selection.rows.size();
   Identified whole = identified(data, most, out.layout, at, chosen.choice, chosen.fit, control, options.noise_mm);
