@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+#include <cstring>
 #include <filesystem>
 #include <memory>
 
@@ -70,9 +71,20 @@ std::string written(const ConvertArguments& arguments, const Robot& robot) {
                                            ".urdf or .yaml.");
 }
 
+bool beyond_geometry(const Robot& robot) {
+  const Transmission none{};
+  return std::memcmp(robot.transmission.function, none.function, sizeof none.function) != 0 ||
+         std::memcmp(robot.transmission.gravity.compliance, none.gravity.compliance, sizeof none.gravity.compliance) != 0;
+}
+
 void run_convert(const ConvertArguments& arguments) {
-  format_of(arguments.output);
-  write_file(arguments.output, written(arguments, read(arguments)));
+  const Format format = format_of(arguments.output);
+  const Robot robot = read(arguments);
+  if (format != Format::robot && beyond_geometry(robot)) {
+    warn("this format holds geometry alone: the robot's joint functions and sag are left out, and without them its geometry is not the "
+         "best one. `mdhcal calibrate --model geometry` finds that.");
+  }
+  write_file(arguments.output, written(arguments, robot));
 }
 
 }  // namespace

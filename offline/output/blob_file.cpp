@@ -2,6 +2,7 @@
 #include "offline/output/blob_file.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 
 #include "mdhcal/calibrated_arm.hpp"
@@ -54,6 +55,9 @@ Robot robot_of(const mdhcal::BlobContent& model, const std::string& path) {
   robot.name = model.name;
   robot.serial = model.serial;
   robot.geometry = model.geometry;
+  robot.transmission = model.transmission;
+  const double* down = model.transmission.gravity.direction;
+  if (std::abs(down[0]) > 0 || std::abs(down[1]) > 0 || std::abs(down[2]) > 0) robot.gravity_direction = {down[0], down[1], down[2]};
   std::copy(std::begin(model.nominal), std::end(model.nominal), robot.nominal.begin());
   if (model.has_base == 1) robot.tracker_T_base = model.tracker_T_base;
   for (std::int32_t k = 0; k < model.target_count; ++k) {

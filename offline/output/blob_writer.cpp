@@ -127,21 +127,12 @@ void put_geometry(const Robot& robot, BlobContent& model) {
   model.family = posture_family(nominal);
 }
 
-// Format 1 has no room for them, and their geometry alone is no calibration.
-void refuse_terms(const Robot& robot) {
-  for (std::int32_t i = 0; i < robot.geometry.joint_count; ++i) {
-    bool any = robot.transmission.function[i].order_count > 0;
-    for (const double k : robot.transmission.gravity.compliance[i]) any = any || std::fabs(k) > 0.0;
-    if (any) throw Refusal("The robot has joint functions or a sag, which this format of the blob does not hold: a controller would take the geometry alone.");
-  }
-}
-
 }  // namespace
 
 BlobContent make_model(const Robot& robot, const Provenance& provenance) {
   BlobContent model{};
   put_geometry(robot, model);
-  refuse_terms(robot);
+  model.transmission = robot.transmission;
   check_deviation(robot);
   put_text(robot, "The robot's name", robot.name, model.name);
   put_text(robot, "The robot's serial", robot.serial, model.serial);
