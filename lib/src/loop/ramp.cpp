@@ -2,7 +2,7 @@
 // The ramp of a compensator: parameters as offsets from a goal that fade.
 #include "mdhcal/compensator.hpp"
 
-#include <cstring>
+#include <string.h>
 
 #include "number/real.hpp"
 
@@ -238,11 +238,11 @@ void place(Compensator<Real>& c) {
 }
 
 bool same_terms(const ArmTerms<Real>& a, const ArmTerms<Real>& b) {
-  return a.functions == b.functions && std::memcmp(a.compliance, b.compliance, sizeof a.compliance) == 0 &&
-         std::memcmp(a.across, b.across, sizeof a.across) == 0 &&
-         std::memcmp(a.payload_compliance, b.payload_compliance, sizeof a.payload_compliance) == 0 &&
-         std::memcmp(a.payload_p_m, b.payload_p_m, sizeof a.payload_p_m) == 0 &&
-         std::memcmp(a.flange_p_m, b.flange_p_m, sizeof a.flange_p_m) == 0 && !(a.payload_kg < b.payload_kg) &&
+  return a.functions == b.functions && memcmp(a.compliance, b.compliance, sizeof a.compliance) == 0 &&
+         memcmp(a.across, b.across, sizeof a.across) == 0 &&
+         memcmp(a.payload_compliance, b.payload_compliance, sizeof a.payload_compliance) == 0 &&
+         memcmp(a.payload_p_m, b.payload_p_m, sizeof a.payload_p_m) == 0 &&
+         memcmp(a.flange_p_m, b.flange_p_m, sizeof a.flange_p_m) == 0 && !(a.payload_kg < b.payload_kg) &&
          !(a.payload_kg > b.payload_kg);
 }
 
