@@ -11,14 +11,17 @@
 
 namespace mdhcal::test {
 
-/// FNV-1a over the bytes of the results.
+/// FNV-1a over the bytes of the results, numbers all, the lowest byte first on every machine.
 class Hash {
  public:
   template <class T>
   void add(const T& value) {
     unsigned char bytes[sizeof(T)];
     std::memcpy(bytes, &value, sizeof(T));
-    for (const unsigned char byte : bytes) state_ = (state_ ^ byte) * 0x100000001B3ULL;
+    for (std::size_t i = 0; i < sizeof(T); ++i) {
+      const std::size_t at = __BYTE_ORDER__ == __ORDER_BIG_ENDIAN__ ? sizeof(T) - 1 - i : i;
+      state_ = (state_ ^ bytes[at]) * 0x100000001B3ULL;
+    }
   }
   std::uint64_t value() const { return state_; }
 
