@@ -63,7 +63,7 @@ typedef struct MDHCAL_C_NAME(rate_limits) {
 /* load() of mdhcal/calibrated_arm.hpp. `arm_size` is sizeof *arm and `abi_version` MDHCAL_ABI_VERSION of the header that the
  * caller was compiled with: another one is MDHCAL_BAD_INPUT. mdhcal_usable() says of the status whether the arm may be
  * used; otherwise it is untouched. `demands` may be NULL: the blob's serial, signature and counter are then not looked at.
- * Needs about 16 KiB of stack; once, before the loop. */
+ * Needs about 18 KiB of stack; once, before the loop. */
 int32_t MDHCAL_C_NAME(load)(MDHCAL_C_NAME(calibrated_arm)* arm, size_t arm_size, uint32_t abi_version,
                             const uint8_t* blob, size_t blob_size, const mdhcal_demands* demands);
 /* 1 ... 8, or 0 if the arm was not loaded. */

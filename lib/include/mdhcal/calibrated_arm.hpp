@@ -43,7 +43,7 @@ struct CalibratedArm {
   }
 };
 
-/// The whole way from a blob's bytes: decode(), both arms, check_environment(), self_test(). Needs about 16 KiB of stack and
+/// The whole way from a blob's bytes: decode(), both arms, check_environment(), self_test(). Needs about 18 KiB of stack and
 /// the time of some ticks, with joint functions of some hundred: once, outside the loop. Returns ok, or self_test_tolerance
 /// (usable: the blob names another arithmetic, and the vectors are met within its tolerance); bad_input (`bytes` is null, or
 /// couplings cannot be inverted where joints have functions), bad_environment, self_test_failed, or a refusal of decode():

@@ -24,12 +24,16 @@ BUDGETS = [
     Budget("cortex-m7", "tick anywhere out of reach", ("tick", "double", "far"), "max", 88000, "instructions"),
     Budget("cortex-m7", "tick along the border", ("tick", "double", "border"), "max", 88000, "instructions"),
     Budget("cortex-m7", "stack of the tick, painted", ("tick", "double", None), "stack painted", 3072, "bytes"),
-    Budget("cortex-m7", "stack of the tick, by the call graph", (TICK,), "stack bound", 3072, "bytes"),
-    Budget("cortex-m7", "forward-only image", (FORWARD,), "code and constants", 4096, "bytes"),
+    # With the transmission's terms, which the call graph cannot leave out. Asked were 3584: an evaluation with all slopes holds
+    # eight joints' sines, levers and the sag's 8 x 8 slopes beside the two Jacobians.
+    Budget("cortex-m7", "stack of the tick, by the call graph", (TICK,), "stack bound", 4864, "bytes"),
+    # 4096 before joint functions and sag.
+    Budget("cortex-m7", "forward-only image", (FORWARD,), "code and constants", 4608, "bytes"),
     # One of the eight sectors of 128 KiB of a bank of the STM32H743 (docs/porting.md) holds it with half as much again of the
     # user's own. It was 64 KiB before the C header had frames, ramps between any two models, and accelerations.
-    Budget("cortex-m7", "everything in double", ("everything in double",), "code and constants", 81920, "bytes"),
-    Budget("cortex-m7", "everything in float", ("everything in float",), "code and constants", 81920, "bytes"),
+    # 80 KiB before the transmission's terms; a third of the sector is still the user's.
+    Budget("cortex-m7", "everything in double", ("everything in double",), "code and constants", 94208, "bytes"),
+    Budget("cortex-m7", "everything in float", ("everything in float",), "code and constants", 94208, "bytes"),
     # Of 8160 bytes; of 4096 it was 60 000.
     Budget("cortex-m7", "decoding a blob", ("decode", "-", None), "max", 120000, "instructions"),
     Budget("cortex-m7", "forward, every term in use", ("forward+terms", "double", None), "max", 2600, "instructions"),
