@@ -5,6 +5,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "tests/lib/arms.hpp"
@@ -24,26 +26,35 @@ Bounded random_problem(Random& random, int n, std::int32_t rows, std::int32_t co
   problem.rows = rows;
   problem.columns = columns;
   for (std::int32_t i = 0; i < rows; ++i) {
-    for (std::int32_t j = 0; j < columns; ++j) problem.row[i][j] = random.symmetric(1);
+    for (std::int32_t j = 0; j < columns; ++j) problem.column[j][i] = random.symmetric(1);
     problem.b[i] = random.symmetric(1);
   }
   if (n % 3 == 0 && rows > 1) {
-    for (std::int32_t j = 0; j < columns; ++j) problem.row[1][j] = problem.row[0][j] + random.symmetric(1e-6);
+    for (std::int32_t j = 0; j < columns; ++j) problem.column[j][1] = problem.column[j][0] + random.symmetric(1e-6);
   }
   problem.budget = 1000;
   problem.damping = std::pow(10.0, -4.0 + 4.0 * std::fabs(random.symmetric(1)));
   for (std::int32_t j = 0; j < columns; ++j) {
-    problem.pull[j] = n % 2 == 0 ? 0 : random.symmetric(0.1);
+    problem.box.pull[j] = n % 2 == 0 ? 0 : random.symmetric(0.1);
     problem.box.low[j] = j == n % 11 ? 0 : -std::pow(10.0, random.symmetric(2));
     problem.box.high[j] = j == n % 7 ? 0 : std::pow(10.0, random.symmetric(2));
   }
   return problem;
 }
 
+std::array<double, max_equations> residual(const BoxProblem& problem, const double* x) {
+  std::array<double, max_equations> left{};
+  std::copy(problem.b, problem.b + problem.rows, left.begin());
+  for (std::int32_t i = 0; i < problem.rows; ++i) {
+    for (std::int32_t j = 0; j < problem.columns; ++j) left[static_cast<std::size_t>(i)] -= problem.column[j][i] * x[j];
+  }
+  return left;
+}
+
 // Minus half the slope of the objective by x_j.
 double pull_on(const Bounded& problem, const double* x, std::int32_t j) {
-  double sum = problem.damping * problem.damping * (problem.pull[j] - x[j]);
-  for (std::int32_t i = 0; i < problem.rows; ++i) sum += problem.row[i][j] * residual(problem, i, x);
+  double sum = problem.damping * problem.damping * (problem.box.pull[j] - x[j]);
+  for (std::int32_t i = 0; i < problem.rows; ++i) sum += problem.column[j][i] * residual(problem, x)[static_cast<std::size_t>(i)];
   return sum;
 }
 
@@ -76,9 +87,9 @@ TEST(BoxLeastSquares, MeetsTheConditionsOfTheMinimum) {
 
 double objective(const Bounded& problem, const double* x) {
   double sum = 0;
-  for (std::int32_t i = 0; i < problem.rows; ++i) sum += residual(problem, i, x) * residual(problem, i, x);
+  for (std::int32_t i = 0; i < problem.rows; ++i) sum += residual(problem, x)[static_cast<std::size_t>(i)] * residual(problem, x)[static_cast<std::size_t>(i)];
   for (std::int32_t j = 0; j < problem.columns; ++j) {
-    sum += problem.damping * problem.damping * (problem.pull[j] - x[j]) * (problem.pull[j] - x[j]);
+    sum += problem.damping * problem.damping * (problem.box.pull[j] - x[j]) * (problem.box.pull[j] - x[j]);
   }
   return sum;
 }
@@ -112,6 +123,7 @@ TEST(BoxLeastSquares, WithRoomIsTheSolutionWithoutBounds) {
   Random random(42);
   for (int n = 0; n < 1000; ++n) {
     Bounded problem = random_problem(random, n, 6, 6);
+    for (double& pull : problem.box.pull) pull = 0;
     double free[max_joints], bounded[max_joints];
     solve_free(problem, free);
     for (std::int32_t j = 0; j < 6; ++j) {

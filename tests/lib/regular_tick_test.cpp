@@ -99,7 +99,7 @@ TEST(RegularTick, KnowsHowTheJacobianChanges) {
     Look look;
     evaluate(arm, q, look.frame, look.coordinates);
     double change[6];
-    change_of_motion(look.coordinates, a, b, change);
+    change_of_motion(look.coordinates, 6, a, b, change);
     constexpr double h = 1e-5;
     double difference[6] = {};
     for (const double side : {1.0, -1.0}) {

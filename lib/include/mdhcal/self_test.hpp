@@ -9,7 +9,7 @@ namespace mdhcal {
 
 /// Names the arithmetic of this library's forward() and tick(): two libraries with the same number give the same bits.
 /// It changes with every change of the source after which one of the two gives other bits.
-inline constexpr std::uint32_t arithmetic_id = 8;
+inline constexpr std::uint32_t arithmetic_id = 9;
 
 /// How far the results may be from the vectors of a blob with another arithmetic id [m] and [rad].
 inline constexpr double self_test_bound = 1e-9;

@@ -9,57 +9,53 @@
 namespace mdhcal {
 namespace {
 
+/// Equations of the largest problem: six of a pose, and one that holds a direction.
+constexpr std::int32_t max_equations = 7;
+
 /// minimise |b - A x|^2 + damping^2 |pull - x|^2
 struct BoxProblem {
-  std::int32_t rows;      ///< of A, at most seven: six of a pose and one that holds a singular value
+  std::int32_t rows;      ///< of A, at most max_equations; fewer than six are filled up with zeros to six
   std::int32_t columns;   ///< of A, at most max_joints
-  Real row[7][max_joints];
-  Real b[7];
+  Real column[max_joints][max_equations];
+  Real b[max_equations];
   Real damping;           ///< > 0
-  Real pull[max_joints];
   std::int32_t budget;    ///< what is left of the tick's work, in thirds of a factorization
 };
 
 /// over low <= x <= high, where low <= 0 <= high.
 struct Box {
   Real low[max_joints], high[max_joints];
+  Real pull[max_joints];
 };
 
 inline bool has(std::uint32_t mask, std::int32_t j) { return ((mask >> static_cast<std::uint32_t>(j)) & 1U) != 0U; }
 
-/// The product of two vectors of `count` numbers. Six are spelled out, as most problems have so many equations: factor()
-/// then takes a quarter fewer instructions.
+/// The product of two vectors of six numbers or more: six are spelled out, as most problems have so many equations.
 inline Real product(const Real* a, const Real* b, std::int32_t count) {
-  Real sum = 0;
-  std::int32_t k = 0;
-  if (count >= 6) {
-    sum = ((((a[0] * b[0] + a[1] * b[1]) + a[2] * b[2]) + a[3] * b[3]) + a[4] * b[4]) + a[5] * b[5];
-    k = 6;
-  }
-  for (; k < count; ++k) sum += a[k] * b[k];
+  Real sum = ((((a[0] * b[0] + a[1] * b[1]) + a[2] * b[2]) + a[3] * b[3]) + a[4] * b[4]) + a[5] * b[5];
+  for (std::int32_t k = 6; k < count; ++k) sum += a[k] * b[k];
   return sum;
 }
 
 /// to -= factor * v, likewise.
 inline void subtract(Real factor, const Real* v, Real* to, std::int32_t count) {
-  std::int32_t k = 0;
-  if (count >= 6) {
-    to[0] -= factor * v[0];
-    to[1] -= factor * v[1];
-    to[2] -= factor * v[2];
-    to[3] -= factor * v[3];
-    to[4] -= factor * v[4];
-    to[5] -= factor * v[5];
-    k = 6;
-  }
-  for (; k < count; ++k) to[k] -= factor * v[k];
+  to[0] -= factor * v[0];
+  to[1] -= factor * v[1];
+  to[2] -= factor * v[2];
+  to[3] -= factor * v[3];
+  to[4] -= factor * v[4];
+  to[5] -= factor * v[5];
+  for (std::int32_t k = 6; k < count; ++k) to[k] -= factor * v[k];
 }
+
+/// The equations that are worked on: no fewer than six.
+inline std::int32_t equations_of(const BoxProblem& problem) { return problem.rows > 6 ? problem.rows : 6; }
 
 /// The matrix of the least-squares problem of damping x = right over A x = b, and in its place the triangle R that
 /// factor() makes of it.
 struct Stack {
   std::int32_t size;        ///< unknowns
-  std::int32_t equations;   ///< of A, at most max_joints
+  std::int32_t equations;   ///< of A, six to max_joints
   Real column[max_joints][max_joints];   ///< of A; then [i][j - 1] is R_ij, j > i
   Real diagonal[max_joints];             ///< of R
 };
@@ -87,8 +83,43 @@ inline void factor(Stack& stack, Real damping, Real* right, Real* b) {
   }
 }
 
+/// `sum` less what x_j ... x_5 are in row `row` of R x.
+template <int row, int j>
+[[gnu::always_inline]] inline Real without_right(const Stack& stack, const Real* x, Real sum) {
+  if constexpr (j > 5) {
+    return sum;
+  } else {
+    return without_right<row, j + 1>(stack, x, sum - stack.column[row][j - 1] * x[j]);
+  }
+}
+
+/// R x = b for six unknowns, written out, from row `row` up.
+template <int row>
+[[gnu::always_inline]] inline void solve_six_upper(const Stack& stack, const Real* b, Real* x) {
+  x[row] = without_right<row, row + 1>(stack, x, b[row]) / stack.diagonal[row];
+  if constexpr (row > 0) solve_six_upper<row - 1>(stack, b, x);
+}
+
+/// `sum` less what x_j ... x_{row - 1} are in row `row` of R^T x.
+template <int row, int j>
+[[gnu::always_inline]] inline Real without_left(const Stack& stack, const Real* x, Real sum) {
+  if constexpr (j == row) {
+    return sum;
+  } else {
+    return without_left<row, j + 1>(stack, x, sum - stack.column[j][row - 1] * x[j]);
+  }
+}
+
+/// R^T x = b for six unknowns, written out, from row `row` down.
+template <int row>
+[[gnu::always_inline]] inline void solve_six_lower(const Stack& stack, const Real* b, Real* x) {
+  x[row] = without_left<row, 0>(stack, x, b[row]) / stack.diagonal[row];
+  if constexpr (row < 5) solve_six_lower<row + 1>(stack, b, x);
+}
+
 /// R x = b; x may be b.
-inline void solve_upper(const Stack& stack, const Real* b, Real* x) {
+[[gnu::noinline]] void solve_upper(const Stack& stack, const Real* b, Real* x) {
+  if (stack.size == 6) return solve_six_upper<5>(stack, b, x);
   for (std::int32_t i = stack.size - 1; i >= 0; --i) {
     const Real* row = stack.column[i];
     Real sum = b[i];
@@ -98,7 +129,8 @@ inline void solve_upper(const Stack& stack, const Real* b, Real* x) {
 }
 
 /// R^T x = b; x may be b.
-inline void solve_lower(const Stack& stack, const Real* b, Real* x) {
+[[maybe_unused, gnu::noinline]] void solve_lower(const Stack& stack, const Real* b, Real* x) {
+  if (stack.size == 6) return solve_six_lower<0>(stack, b, x);
   for (std::int32_t i = 0; i < stack.size; ++i) {
     Real sum = b[i];
     for (std::int32_t j = 0; j < i; ++j) sum -= stack.column[j][i - 1] * x[j];
@@ -106,33 +138,27 @@ inline void solve_lower(const Stack& stack, const Real* b, Real* x) {
   }
 }
 
-/// What x leaves of b in equation i.
-inline Real residual(const BoxProblem& problem, std::int32_t i, const Real* x) {
-  Real left = problem.b[i];
-  for (std::int32_t j = 0; j < problem.columns; ++j) left -= problem.row[i][j] * x[j];
-  return left;
-}
-
-/// Minus half the slope of |b - A x|^2 by x_j at 0.
-inline Real slope_of(const BoxProblem& problem, std::int32_t j) {
-  Real sum = 0;
-  for (std::int32_t i = 0; i < problem.rows; ++i) sum += problem.row[i][j] * problem.b[i];
-  return sum;
+/// y -= A x
+inline void take_all(const BoxProblem& problem, const Real* x, Real* y) {
+  const std::int32_t equations = equations_of(problem);
+  for (std::int32_t j = 0; j < problem.columns; ++j) subtract(x[j], problem.column[j], y, equations);
 }
 
 /// Factors the problem over the unknowns in `free_mask`, the others (if any) at x, and makes R z = right of it for the
-/// free ones, in their order.
-inline void factor_free(BoxProblem& problem, std::uint32_t free_mask, const Real* x, Stack& stack, Real* right) {
-  Real b[7];
-  stack.equations = problem.rows;
-  for (std::int32_t i = 0; i < problem.rows; ++i) b[i] = problem.b[i];
+/// free ones, in their order. No `pull`: to 0.
+inline void factor_free(BoxProblem& problem, const Real* pull, std::uint32_t free_mask, const Real* x, Stack& stack,
+                        Real* right) {
+  Real b[max_joints];  // as long as what factor() takes
+  const std::int32_t equations = equations_of(problem);
+  stack.equations = equations;
+  for (std::int32_t i = 0; i < equations; ++i) b[i] = problem.b[i];
   std::int32_t size = 0;
   for (std::int32_t j = 0; j < problem.columns; ++j) {
     if (has(free_mask, j)) {
-      for (std::int32_t i = 0; i < problem.rows; ++i) stack.column[size][i] = problem.row[i][j];
-      right[size++] = problem.damping * problem.pull[j];
+      for (std::int32_t i = 0; i < equations; ++i) stack.column[size][i] = problem.column[j][i];
+      right[size++] = pull != nullptr ? problem.damping * pull[j] : Real{0};
     } else {
-      for (std::int32_t i = 0; i < problem.rows; ++i) b[i] -= problem.row[i][j] * x[j];
+      subtract(x[j], problem.column[j], b, equations);
     }
   }
   stack.size = size;
@@ -140,11 +166,11 @@ inline void factor_free(BoxProblem& problem, std::uint32_t free_mask, const Real
   problem.budget -= 3;
 }
 
-/// The minimum over all unknowns, free of bounds.
-[[gnu::noinline]] void solve_free(BoxProblem& problem, Real* x) {
+/// The minimum over all unknowns, free of bounds, of the problem that pulls to 0.
+[[maybe_unused, gnu::noinline]] void solve_free(BoxProblem& problem, Real* x) {
   Stack stack;
   Real right[max_joints];
-  factor_free(problem, (1U << static_cast<std::uint32_t>(problem.columns)) - 1U, nullptr, stack, right);
+  factor_free(problem, nullptr, (1U << static_cast<std::uint32_t>(problem.columns)) - 1U, nullptr, stack, right);
   solve_upper(stack, right, x);
 }
 
@@ -224,6 +250,7 @@ inline std::int32_t place(std::uint32_t free_mask, std::int32_t j) {
 /// bound, which then holds, or lets go of the one that the residual pulls away from the hardest. The objective falls in
 /// every round, so x is usable at the bound of rounds, or of the tick's work, too.
 [[maybe_unused, gnu::noinline]] void solve(BoxProblem& problem, const Box& box, Real* x) {
+  const std::int32_t equations = equations_of(problem);
   std::uint32_t movable = 0;
   for (std::int32_t j = 0; j < problem.columns; ++j) {
     x[j] = 0;
@@ -232,7 +259,7 @@ inline std::int32_t place(std::uint32_t free_mask, std::int32_t j) {
   std::uint32_t free_mask = movable;
   Stack stack;
   Real right[max_joints];
-  factor_free(problem, free_mask, x, stack, right);
+  factor_free(problem, box.pull, free_mask, x, stack, right);
   for (std::int32_t round = 0; round < 3 * problem.columns && problem.budget > 0; ++round) {
     Real z[max_joints];
     solve_upper(stack, right, z);
@@ -244,19 +271,17 @@ inline std::int32_t place(std::uint32_t free_mask, std::int32_t j) {
       continue;
     }
     if (free_mask == movable) break;
-    Real* const slope = z;  // which has served: the stack of a controller is short
-    for (std::int32_t j = 0; j < problem.columns; ++j) {
-      slope[j] = problem.damping * problem.damping * (problem.pull[j] - x[j]);
-    }
-    for (std::int32_t i = 0; i < problem.rows; ++i) {
-      const Real left = residual(problem, i, x);
-      for (std::int32_t j = 0; j < problem.columns; ++j) slope[j] += problem.row[i][j] * left;
-    }
+    Real* const left = z;  // which has served: the stack of a controller is short
+    for (std::int32_t i = 0; i < equations; ++i) left[i] = problem.b[i];
+    take_all(problem, x, left);
     Real hardest = 0;
     std::int32_t release = -1;
     for (std::int32_t j = 0; j < problem.columns; ++j) {
       if (!has(movable & ~free_mask, j)) continue;
-      const Real inward = x[j] < box.high[j] ? slope[j] : -slope[j];
+      const Real slope =
+          problem.damping * problem.damping * (box.pull[j] - x[j]) + product(problem.column[j], left, 6) +
+          (equations > 6 ? problem.column[j][6] * left[6] : Real{0});
+      const Real inward = x[j] < box.high[j] ? slope : -slope;
       if (inward > hardest) {
         hardest = inward;
         release = j;
@@ -264,7 +289,7 @@ inline std::int32_t place(std::uint32_t free_mask, std::int32_t j) {
     }
     if (release < 0) break;
     free_mask |= 1U << static_cast<std::uint32_t>(release);
-    factor_free(problem, free_mask, x, stack, right);
+    factor_free(problem, box.pull, free_mask, x, stack, right);
   }
 }
 

@@ -26,21 +26,14 @@ bool valid(const TickOptions<Real>& options, std::int32_t joints) {
   return true;
 }
 
-// Where the tick may leave joint j. The rounding of q + step must not add to the step, hence the margin.
-void set_bounds(TickState& state, std::int32_t j, Real q) {
-  constexpr Real epsilon = sizeof(Real) == sizeof(double) ? Real(2.3e-16) : Real(1.2e-7);
+// The limits of joint j; outside them it only moves inwards.
+void set_limits(TickState& state, std::int32_t j, Real q) {
   const Arm<Real>& arm = *state.arm;
   const std::uint32_t bit = 1U << static_cast<std::uint32_t>(j);
-  const Real max_step = state.tick->limits.max_step[j];
-  const Real reach = max_step - epsilon * (magnitude(q) + max_step);
-  Real low = reach > Real{0} ? q - reach : q;
-  Real high = reach > Real{0} ? q + reach : q;
   const Real min = (arm.min_mask & bit) != 0U ? arm.min[j] : -largest;
   const Real max = (arm.max_mask & bit) != 0U ? arm.max[j] : largest;
-  if (low < min) low = q < min ? q : min;
-  if (high > max) high = q > max ? q : max;
-  state.low[j] = low;
-  state.high[j] = high;
+  state.low[j] = q < min ? q : min;
+  state.high[j] = q > max ? q : max;
 }
 
 std::uint32_t outside_limits(const Arm<Real>& arm, const Real* q) {
@@ -84,14 +77,15 @@ TickOptions<Real> default_tick_options(const Arm<Real>&) noexcept {
   for (Real& step : options.limits.max_step) step = largest;
   options.goal.position_weight = 1;
   options.goal.rotation_weight = Real(0.001);
-  options.max_iterations = 11;
+  options.max_iterations = 4;
   options.goal.task = Task::pose;
   return options;
 }
 
 Status tick(const Arm<Real>& arm, const TickOptions<Real>& options, const Pose<Real>& base_T_flange, Real* q,
-            TickReport<Real>* report) noexcept {
+            TickReport<Real>* report, const Real* branch) noexcept {
   if (!readings_valid(arm, q) || !valid(options, arm.joint_count) || !target_valid(base_T_flange)) return Status::bad_input;
+  if (branch != nullptr && !readings_valid(arm, branch)) return Status::bad_input;
   TickState state;
   state.arm = &arm;
   state.options = &options.goal;
@@ -99,9 +93,10 @@ Status tick(const Arm<Real>& arm, const TickOptions<Real>& options, const Pose<R
   to_frame(base_T_flange, state.target);
   state.length_m = length_unit(arm);
   state.last = q;
+  state.from = branch != nullptr ? branch : q;
   for (std::int32_t j = 0; j < arm.joint_count; ++j) {
-    state.q[j] = q[j];
-    set_bounds(state, j, q[j]);
+    set_limits(state, j, q[j]);
+    state.q[j] = within_limits(state, j, state.from[j]);
   }
   state.evaluations = 0;
   state.step_mask = 0;

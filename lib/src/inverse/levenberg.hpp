@@ -32,7 +32,6 @@ inline bool refine(const Goal& goal, Real* q) {
   problem.rows = task_rank(goal.options->task);
   problem.columns = arm.joint_count;
   problem.budget = 0;  // of no account here
-  for (std::int32_t j = 0; j < arm.joint_count; ++j) problem.pull[j] = 0;
   Frame<Real> frame;
   Jacobian<Real> coordinates;
   PoseError error;

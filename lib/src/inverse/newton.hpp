@@ -88,6 +88,51 @@ template <int row, int last>
   if constexpr (row > 0) solve_upper<row - 1, last>(f, b);
 }
 
+/// `sum` less what x_0 ... x_j are in row `row` of R^T x.
+template <int row, int j>
+[[gnu::always_inline]] inline Real without_above(const Factors& f, const Real* x, Real sum) {
+  if constexpr (j < 0) {
+    return sum;
+  } else {
+    return without_above<row, j - 1>(f, x, sum - f.column[row][j] * x[j]);
+  }
+}
+
+/// R^T x = b, x in the place of b, from row `row` down.
+template <int row>
+[[gnu::always_inline]] inline void solve_lower(const Factors& f, Real* b) {
+  b[row] = f.inverse_diagonal[row] * without_above<row, row - 1>(f, b, b[row]);
+  if constexpr (row < 5) solve_lower<row + 1>(f, b);
+}
+
+/// Whether the determinant is negative: the six reflections do not change its sign.
+inline bool negative_determinant(const Factors& f) {
+  bool negative = false;
+  for (const Real inverse : f.inverse_diagonal) negative = negative != (inverse < Real{0});
+  return negative;
+}
+
+/// Whether the inverse is too large to be worked with: its rounding tells no direction, and its squares would overflow in float.
+inline bool is_singular(const Factors& f) {
+  for (const Real inverse : f.inverse_diagonal) {
+    if (magnitude(inverse) > Real(1e7)) return true;
+  }
+  return false;
+}
+
+/// The direction v of length 1 in which |A v| is least: inverse iteration, two rounds. What they leave is the fourth power of
+/// the part that the least singular value is of the next.
+[[gnu::noinline]] void weakest_direction(const Factors& f, Real* v) {
+  // Any start will do that is not orthogonal to what is sought; unlike entries make that unlikely.
+  for (int i = 0; i < 6; ++i) v[i] = i % 2 == 0 ? Real{1} : Real(0.7);
+  for (int round = 0; round < 2; ++round) {
+    solve_lower<0>(f, v);
+    solve_upper<5, 5>(f, v);
+    const Real scale = Real{1} / square_root(tail_product<0>(v, v));
+    for (int i = 0; i < 6; ++i) v[i] *= scale;
+  }
+}
+
 /// The squares of the columns from k on of R^-1, summed up.
 template <int k>
 [[gnu::always_inline]] inline Real inverse_squares(const Factors& f) {

@@ -303,7 +303,8 @@ bool prepare(const Arm<Real>& arm, const SolutionOptions<Real>& options, const P
   search.periodic_mask = periodic_joints(arm);
   search.goal.arm = &arm;
   search.goal.options = &options.goal;
-  search.goal.length_m = length_unit(arm);
+  // Starting values are refined from far off, where the whole reach is the scale of an error.
+  search.goal.length_m = arm.reach_m > Real(1e-6) ? arm.reach_m : Real{1};
   search.target = target;
   search.smallest = 1;
   search.tick = default_tick_options(arm);

@@ -34,7 +34,7 @@ inline void tilt_of_x(const Frame<Real>& frame, Real* tilt) {
 }
 
 /// The components that the task asks for of a displacement of the flange: lengths over the arm's, angles times
-/// `rotation_weight`.
+/// `rotation_weight`; zeros up to six.
 inline void to_task(const Goal& goal, const Frame<Real>& frame, Real rotation_weight, const Real* displacement,
                     Real* component) {
   const Real per_length = Real{1} / goal.length_m;
@@ -47,6 +47,7 @@ inline void to_task(const Goal& goal, const Frame<Real>& frame, Real rotation_we
       for (int k = 0; k < 3; ++k) component[3 + k] = turn[k] * rotation_weight;
       return;
     case Task::position_axis:
+      component[5] = 0;
       // The z axis turns about the flange's x and y axes.
       for (int k = 0; k < 2; ++k) {
         const Real* r = frame.rotation + k;
@@ -57,9 +58,12 @@ inline void to_task(const Goal& goal, const Frame<Real>& frame, Real rotation_we
       Real tilt[2];
       tilt_of_x(frame, tilt);
       component[2] = (turn[2] - (tilt[0] * turn[0] + tilt[1] * turn[1])) * rotation_weight;
+      for (int k = 3; k < 6; ++k) component[k] = 0;
       return;
     }
-    case Task::position: return;
+    case Task::position:
+      for (int k = 3; k < 6; ++k) component[k] = 0;
+      return;
   }
 }
 
@@ -88,16 +92,14 @@ inline void from_task(const Goal& goal, const Frame<Real>& frame, const Real* u,
   }
 }
 
-/// Rows of the task's Jacobian by unit-free readings, from the one by joint coordinate.
+/// The task's Jacobian by unit-free readings, from the one by joint coordinate.
 inline void linearise(const Goal& goal, const Frame<Real>& frame, const Jacobian<Real>& coordinates,
                       Real rotation_weight, BoxProblem& problem) {
   const Arm<Real>& arm = *goal.arm;
   for (std::int32_t j = 0; j < arm.joint_count; ++j) {
     Real column[6];
     reading_column(arm, coordinates, j, joint_unit(goal, j), column);
-    Real component[6];
-    to_task(goal, frame, rotation_weight, column, component);
-    for (std::int32_t i = 0; i < problem.rows; ++i) problem.row[i][j] = component[i];
+    to_task(goal, frame, rotation_weight, column, problem.column[j]);
   }
 }
 
