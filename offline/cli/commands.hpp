@@ -14,6 +14,7 @@ void add_pack(CLI::App& app);
 void add_forward(CLI::App& app);
 void add_inverse(CLI::App& app);
 void add_correct(CLI::App& app);
+void add_filter(CLI::App& app);
 void add_verify(CLI::App& app);
 void add_monitor(CLI::App& app);
 void add_show(CLI::App& app);
@@ -36,6 +37,7 @@ inline void add_commands(CLI::App& app) {
   add_forward(app);
   add_inverse(app);
   add_correct(app);
+  add_filter(app);
   add_verify(app);
   add_monitor(app);
   add_show(app);

@@ -5,8 +5,8 @@
 
 #include "offline/base/error.hpp"
 #include "offline/cli/blob_command.hpp"
-#include "offline/cli/cold_start.hpp"
 #include "offline/cli/commands.hpp"
+#include "offline/filter/cold_start.hpp"
 
 namespace mdhcal::offline {
 

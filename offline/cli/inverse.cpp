@@ -3,9 +3,9 @@
 #include <memory>
 
 #include "offline/cli/blob_command.hpp"
-#include "offline/cli/cold_start.hpp"
 #include "offline/cli/commands.hpp"
 #include "offline/cli/rotation_option.hpp"
+#include "offline/filter/cold_start.hpp"
 
 namespace mdhcal::offline {
 

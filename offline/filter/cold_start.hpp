@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "mdhcal/solutions.hpp"
-#include "offline/measure/joint_file.hpp"
+#include "offline/robot/robot.hpp"
 
 namespace mdhcal::offline {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "offline/cli/cold_start.hpp"
+#include "offline/filter/cold_start.hpp"
 
 #include <algorithm>
 #include <cmath>
