@@ -6,6 +6,7 @@
 #include "offline/cli/commands.hpp"
 #include "offline/cli/rotation_option.hpp"
 #include "offline/filter/cold_start.hpp"
+#include "offline/measure/joint_file.hpp"
 
 namespace mdhcal::offline {
 

@@ -281,7 +281,7 @@ class Filter {
     }
     const double sag = distance_between(compose(frame_of(needed), tool), told);
     if (!(sag > options_.least_sag_m)) return;
-    note(to.at, "the line to target " + end.position.name + ", " + number(1e3 * distance_between(compose(a.meant, tool), compose(b.meant, tool))) +
+    note(to.at, "the line to target " + end.position.name + ", " + number(1e3 * distance_between(compose(a.meant, tool), compose(b.meant, tool)), 0) +
                     " mm long, is off its straight by " + number(1e3 * sag) + " mm half way; a target there would make it a quarter of that.");
   }
 

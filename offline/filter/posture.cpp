@@ -27,6 +27,14 @@ double way_between(const Joints& a, const Joints& b) {
 // within twice this way, and two solutions so near to each other are next to a singularity, which a move does not pass by itself.
 bool near_by(const Joints& a, const Joints& b) { return way_between(a, b) < 10 * one_degree_rad; }
 
+// Whether shoulder, elbow and wrist are all stated, the first and the last perhaps by the turns of axes 1 and 4, which the other side
+// would leave by half a turn.
+bool complete(const Configuration& stated) {
+  const auto bounded = [&](std::size_t j) { return stated.reading[j].most - stated.reading[j].least < one_turn_rad / 2; };
+  const bool wrist = stated.reading[4].least > -unbounded || stated.reading[4].most < unbounded || bounded(3);
+  return stated.lower && (stated.rear || bounded(0)) && wrist;
+}
+
 // The arm of the first links, of joint coordinates instead of readings.
 Arm<double> begin_of_arm(Geometry geometry, std::int32_t count) {
   for (std::size_t k = 0; k < max_joints; ++k) {
@@ -97,7 +105,7 @@ double Postures::distance(const Configuration& stated, const Joints& q) const {
 Solved Postures::solve(const Pose<double>& base_T_flange, const Configuration& stated, const Joints& before) const {
   const Solved near = solve_from(arm_, base_T_flange, before);
   if (near.status == Status::bad_input) return near;
-  if (near.status == Status::ok && near_by(near.q, before) && distance(stated, near.q) < nearest_rad) return near;
+  if (near.status == Status::ok && (complete(stated) || near_by(near.q, before)) && distance(stated, near.q) < nearest_rad) return near;
   Solutions<double> found{};
   const Status status = find_solutions(arm_, default_solution_options(arm_), base_T_flange, before.data(), found);
   if (status != Status::ok) return {near.q, near.status == Status::ok ? Status::not_converged : near.status};

@@ -41,7 +41,8 @@ class Postures {
   /// elbow on another side.
   double distance(const Configuration& stated, const Joints& q) const;
 
-  /// The readings that meet the pose in the configuration: on the branch of `before`, if that is stated and near; else of all solutions
+  /// The readings that meet the pose in the configuration: on the branch of `before`, if that is what is stated, or near where not all is
+  /// stated; else of all solutions
   /// the one nearest to what is stated, and of those that fit alike the one the shortest way from `before` (root of the sum of squares,
   /// as no turn is worth another). not_converged if none fits to a degree.
   Solved solve(const Pose<double>& base_T_flange, const Configuration& stated, const Joints& before) const;

@@ -42,6 +42,7 @@ TEST(Replay, Manifest) { replay("manifest", manifest_target, 200); }
 TEST(Replay, Key) { replay("key", key_target, 100); }
 TEST(Replay, Source) { replay("source", source_target, 100); }
 TEST(Replay, Program) { replay("program", program_target, 200); }
+TEST(Replay, Filter) { replay("program", filter_target, 50); }
 TEST(Replay, Profile) { replay("profile", profile_target, 100); }
 
 }  // namespace

@@ -49,6 +49,9 @@ void source_target(const std::uint8_t* data, std::size_t size);
 /// read_program() in every language: each number's bytes are the number.
 void program_target(const std::uint8_t* data, std::size_t size);
 
+/// filter_program() in every language, for a six-joint arm: what it gives is the text with numbers and flags replaced.
+void filter_target(const std::uint8_t* data, std::size_t size);
+
 /// parse_profile(), then a table read by it.
 void profile_target(const std::uint8_t* data, std::size_t size);
 
