@@ -24,12 +24,16 @@ struct FilterArguments {
   double sag_mm = 0.05;
 };
 
-bool same_links(const BlobContent& model) {
+bool nothing_to_correct(const BlobContent& model) {
   const auto same = [](const Link& a, const Link& b) {
     return std::equal_to<>()(a.alpha_rad, b.alpha_rad) && std::equal_to<>()(a.a_m, b.a_m) && std::equal_to<>()(a.theta_rad, b.theta_rad) &&
            std::equal_to<>()(a.d_m, b.d_m) && std::equal_to<>()(a.beta_rad, b.beta_rad);
   };
-  return std::equal(model.nominal, model.nominal + model.geometry.joint_count, model.geometry.link, same);
+  const auto sags = [](double d) { return std::abs(d) > 0; };
+  const Transmission& terms = model.transmission;
+  return std::equal(model.nominal, model.nominal + model.geometry.joint_count, model.geometry.link, same) &&
+         std::none_of(std::begin(terms.function), std::end(terms.function), [](const JointFunction& f) { return f.order_count > 0; }) &&
+         std::none_of(std::begin(terms.gravity.direction), std::end(terms.gravity.direction), sags);
 }
 
 // A drawing's table: every axis parallel or square to the one before. A factory calibration has no such angle.
@@ -45,7 +49,7 @@ void check_controller(const FilterArguments& arguments, ProgramLanguage language
                   "nominal geometry) would correct this program a second time; expected the option switched off, or a calibration whose robot file "
                   "states what the controller computes with.");
   }
-  if (same_links(model)) warn(arguments.blob + ": the blob's corrected geometry is the nominal one: there is nothing to correct.");
+  if (nothing_to_correct(model)) warn(arguments.blob + ": the blob's corrected geometry is the nominal one: there is nothing to correct.");
   if (!arguments.controller.empty()) return;
   if (language == ProgramLanguage::urscript && of_a_drawing(model)) {
     warn("The blob's nominal geometry is a drawing's, and the controllers of Universal Robots compute with a factory calibration: calibrate with "

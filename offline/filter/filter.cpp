@@ -10,6 +10,7 @@
 #include "offline/base/sentences.hpp"
 #include "offline/filter/number_text.hpp"
 #include "offline/import/scanner.hpp"
+#include "offline/robot/arm_with_terms.hpp"
 #include "offline/robot/vectors.hpp"
 
 namespace mdhcal::offline {
@@ -63,7 +64,10 @@ class Filter {
   Filter(std::string_view text, ProgramLanguage language, const std::string& path, const BlobContent& blob, const FilterOptions& options)
       : text_(text), path_(path), options_(options), program_(read_targets(text, language, path, options.frames)), nominal_(nominal_of(blob)),
         met_(program_.targets.size()) {
-    if (make_arm(blob.geometry, actual_) != Status::ok) throw InputError(path, 0, 0, "The geometry in the blob is outside the library's valid range.");
+    if (prepare(blob.geometry, blob.transmission, prepared_) != Status::ok) {
+      throw InputError(path, 0, 0, "The geometry in the blob is outside the library's valid range.");
+    }
+    actual_ = prepared_.arm;
     if (actual_.prismatic_mask != 0) throw InputError(path, 0, 0, "Found an arm with a joint that slides in the blob; expected turning joints, as the languages of programs have them.");
     joints_ = static_cast<std::size_t>(blob.geometry.joint_count);
   }
@@ -303,6 +307,7 @@ class Filter {
   const FilterOptions& options_;
   TargetText program_;
   Postures nominal_;
+  ArmWithTerms<double> prepared_;
   Arm<double> actual_{};
   std::size_t joints_ = 0;
   Joints before_{};

@@ -49,8 +49,8 @@ std::string replaced(std::string text, const std::string& a, const std::string& 
 TEST(FilterRefusals, PlacesAreNamed) {
   Job job;
   job.expect_refused("hello\n", 2, "Found no positions of a robot program");
-  job.expect_refused(krl_head + replaced(krl_point, "S 2", "S 2.5"), 2, "p:3:76: Found a status S that is no whole number");
-  job.expect_refused(krl_head + replaced(krl_point, "A 0.0000", "A 1e999"), 2, "p:3:55: Found a number that is too large");
+  job.expect_refused(krl_head + replaced(krl_point, "S 2", "S 2.5"), 2, "p:3:80: Found a status S that is no whole number");
+  job.expect_refused(krl_head + replaced(krl_point, "A 0.0000", "A 1e999"), 2, "p:3:52: Found a number that is too large");
   job.expect_refused("/PROG T\n/MN\n/POS\nP[1]{\n GP1:\n UF : 1, UT : 1, CONFIG : 'N X T, 0, 0, 0',\n X = 1 mm, Y = 2 mm, Z = 3 mm,\n W = 1 deg, P = 2 deg, R = 3 deg\n};\n/END\n", 2,
                      "p:6:30: Found 'X' in a CONFIG");
   job.expect_refused("/PROG T\n/MN\n/POS\nP[1]{\n GP1:\n UF : 1, UT : 1, CONFIG : 'N U T, 0, 0, 0',\n X = 1 mm", 2, "p:4:1: Found a position that is not closed");
