@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include "offline/base/distributions.hpp"
 #include "offline/base/error.hpp"
@@ -23,6 +22,7 @@
 #include "offline/identify/rotation_noise.hpp"
 #include "offline/identify/shared_error.hpp"
 #include "offline/identify/spectrum.hpp"
+#include "offline/identify/splitting.hpp"
 #include "offline/identify/unknowns.hpp"
 #include "offline/identify/usable.hpp"
 #include "offline/identify/verdict.hpp"
@@ -42,42 +42,9 @@ LambdaRule rule_of(const CalibrationOptions& options) {
                    "\"; expected reml, rpim, rpim-train, l-curve, gcv, cv, discrepancy or quasi-optimality.");
 }
 
-// Draws whole groups for the test until the fraction is reached.
-void split_off_test(const Dataset& data, const CalibrationOptions& options, std::vector<std::size_t>& training,
-                    std::vector<std::size_t>& testing) {
-  std::vector<std::uint32_t> order(data.groups.size());
-  std::iota(order.begin(), order.end(), 0U);
-  Random random(options.seed);
-  for (std::size_t i = order.size(); i > 1; --i) std::swap(order[i - 1], order[random.index(i)]);
-  const auto wanted = static_cast<std::size_t>(std::llround(options.test_fraction * static_cast<double>(order.size())));
-  std::vector<bool> drawn(order.size(), false);
-  for (std::size_t i = 0; i < std::min(wanted, order.size()); ++i) drawn[order[i]] = true;
-  for (std::uint32_t group : options.held_out_groups) drawn[group] = true;
-  for (std::size_t row = 0; row < data.rows.size(); ++row) {
-    if (data.rows[row].kind == MeasurementKind::joints) continue;
-    (drawn[data.rows[row].group] ? testing : training).push_back(row);
-  }
-}
-
 Dataset with_commanded(Dataset data) {
   for (std::size_t i = 0; i < data.rows.size() && i < data.commanded.size(); ++i) data.rows[i].q = data.commanded[i];
   return data;
-}
-
-// Rows of another file, their targets renumbered to those of the training data.
-Dataset aligned(const Dataset& test, const Dataset& training) {
-  Dataset out = test;
-  for (Measurement& m : out.rows) {
-    const std::string& word = test.targets.empty() ? std::string() : test.targets[m.target];
-    const auto found = std::find(training.targets.begin(), training.targets.end(), word);
-    if (found == training.targets.end() && !(training.targets.empty() && word.empty())) {
-      throw InputError(test.path, m.line, 0,
-                       "Found the target \"" + word + "\", which the measurements to identify from do not have.");
-    }
-    m.target = static_cast<std::uint32_t>(found - training.targets.begin());
-  }
-  out.targets = training.targets;
-  return out;
 }
 
 // The turn of a target's probe where it was fitted, else as stated.
@@ -177,23 +144,6 @@ void compare_rules(const Linearised& at, LambdaReport& report) {
   for (const char* rule : {"rpim", "rpim-train", "cv", "discrepancy"}) {
     if (rule != report.rule) report.silent.push_back(std::string(rule) + ": not run (it judges every row, or needs sigma); --lambda-rule runs it.");
   }
-}
-
-// A test file's rows under the name of the target that stays.
-Dataset renamed(Dataset data, const std::vector<std::pair<std::string, std::string>>& twins) {
-  for (const auto& [twin, target] : twins) {
-    const auto from = std::find(data.targets.begin(), data.targets.end(), twin);
-    const auto to = std::find(data.targets.begin(), data.targets.end(), target);
-    if (from == data.targets.end()) continue;
-    if (to == data.targets.end()) {
-      *from = target;
-      continue;
-    }
-    for (Measurement& m : data.rows) {
-      if (m.target == static_cast<std::uint32_t>(from - data.targets.begin())) m.target = static_cast<std::uint32_t>(to - data.targets.begin());
-    }
-  }
-  return data;
 }
 
 // The point of a target that was measured under two names, under its other name too.

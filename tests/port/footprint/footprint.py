@@ -27,7 +27,7 @@ DOCUMENT = ROOT / "docs/footprint.md"
 BASELINE = pathlib.Path(__file__).parent / "baseline"
 GROWTH = 1.05
 COSTS = ["function", "precision", "inputs", "count", "min", "median", "max", "stack painted"]
-ASKED = ["on", "what", "asked, at most", "measured"]
+ASKED = ["on", "what", "asserted, at most", "measured"]
 SIZES = ["function", "code and constants", "stack bound"]
 
 
