@@ -21,6 +21,9 @@ struct ReadingRange {
   double most = unbounded;
 };
 
+/// Axis 5 on the side of straight that a wrist's flag states: within half a turn, beyond which the sides change over.
+inline constexpr ReadingRange wrist_positive{0, one_turn_rad / 2}, wrist_negative{-one_turn_rad / 2, 0};
+
 /// What a program states about the joints of a pose, beside the pose. The reference is the arm at readings of
 /// zero, with joints 2 and 3 a little above it.
 struct Configuration {

@@ -17,7 +17,7 @@ void read_config(Scanner& s, ProgramTarget& target) {
     switch (s.peek()) {
       case 'F': case 'N':
         target.letter = s.at();
-        target.stated.reading[4] = s.peek() == 'F' ? ReadingRange{-unbounded, 0} : ReadingRange{0, unbounded};
+        target.stated.reading[4] = s.peek() == 'F' ? wrist_negative : wrist_positive;
         break;
       case 'U': case 'D': target.stated.lower = s.peek() == 'D'; break;
       case 'T': case 'B': target.stated.rear = s.peek() == 'B'; break;

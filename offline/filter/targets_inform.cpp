@@ -34,7 +34,7 @@ struct InformState {
     Configuration out;
     const auto flag = [&](std::size_t k) { return configuration[k].value > 0.5; };
     if (configuration.size() < 6) return out;
-    out.reading[4] = flag(0) ? ReadingRange{0, unbounded} : ReadingRange{-unbounded, 0};
+    out.reading[4] = flag(0) ? wrist_positive : wrist_negative;
     out.lower = flag(1);
     out.rear = flag(2);
     constexpr std::size_t joints[3] = {3, 5, 0};

@@ -36,18 +36,19 @@ bool whole(double value, double most) { return value >= 0 && value <= most && !(
 void read_status_and_turn(std::string_view text, const std::string& path, ProgramTarget& target) {
   const auto status = component_in(text, path, target.position.begin, "s");
   const auto turn = component_in(text, path, target.position.begin, "t");
-  if (status) {
-    if (!whole(status->value, 63)) Scanner(text, path).fail_at(status->begin, "Found a status S that is no whole number from 0 to 63.");
-    const int s = static_cast<int>(status->value);
-    target.stated.rear = (s & 1) != 0;
-    target.stated.lower = (s & 2) == 0;
-    target.stated.reading[4] = (s & 4) != 0 ? ReadingRange{-unbounded, 0} : ReadingRange{0, unbounded};
-  }
   if (turn) {
     if (!whole(turn->value, 63)) Scanner(text, path).fail_at(turn->begin, "Found a turn T that is no whole number from 0 to 63.");
     const int t = static_cast<int>(turn->value);
     for (std::size_t j = 0; j < 6; ++j) target.stated.reading[j] = ((t >> j) & 1) != 0 ? ReadingRange{-unbounded, 0} : ReadingRange{0, unbounded};
     target.flags.push_back({*turn, 0});
+  }
+  // Behind T, whose sign of axis 5 does not end at half a turn.
+  if (status) {
+    if (!whole(status->value, 63)) Scanner(text, path).fail_at(status->begin, "Found a status S that is no whole number from 0 to 63.");
+    const int s = static_cast<int>(status->value);
+    target.stated.rear = (s & 1) != 0;
+    target.stated.lower = (s & 2) == 0;
+    target.stated.reading[4] = (s & 4) != 0 ? wrist_negative : wrist_positive;
   }
 }
 

@@ -97,8 +97,8 @@ TargetText val3_targets(std::string_view text, const std::string& path) {
       // ssame, sfree and the like state nothing: the solution nearest to the target before.
       if (shoulder == "righty" || shoulder == "lefty") target.stated.rear = shoulder == "lefty";
       if (elbow == "epositive" || elbow == "enegative") target.stated.lower = elbow == "enegative";
-      if (wrist == "wpositive") target.stated.reading[4] = {0, unbounded};
-      if (wrist == "wnegative") target.stated.reading[4] = {-unbounded, 0};
+      if (wrist == "wpositive") target.stated.reading[4] = wrist_positive;
+      if (wrist == "wnegative") target.stated.reading[4] = wrist_negative;
     }
     out.targets.push_back(std::move(target));
   }
