@@ -9,10 +9,10 @@ int c_consumer(const uint8_t* blob, size_t size);
 int c_consumer_float(const uint8_t* blob, size_t size);
 
 /* The sizes that the header states. */
-typedef char arm_size_is_stated[sizeof(mdhcal_calibrated_arm) == 3584 ? 1 : -1];
-typedef char compensator_size_is_stated[sizeof(mdhcal_compensator) == 5632 ? 1 : -1];
-typedef char float_arm_size_is_stated[sizeof(mdhcalf_calibrated_arm) == 2304 ? 1 : -1];
-typedef char float_compensator_size_is_stated[sizeof(mdhcalf_compensator) == 3072 ? 1 : -1];
+typedef char arm_size_is_stated[sizeof(mdhcal_calibrated_arm) == 26624 ? 1 : -1];
+typedef char compensator_size_is_stated[sizeof(mdhcal_compensator) == 10240 ? 1 : -1];
+typedef char float_arm_size_is_stated[sizeof(mdhcalf_calibrated_arm) == 24064 ? 1 : -1];
+typedef char float_compensator_size_is_stated[sizeof(mdhcalf_compensator) == 5376 ? 1 : -1];
 
 #define CHECK(condition) \
   do {                   \
