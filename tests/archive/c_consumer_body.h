@@ -6,7 +6,7 @@ int CONSUMER(const uint8_t* blob, size_t size) {
   static NAME(calibrated_arm) model, fresh;
   static union {
     double align;
-    unsigned char bytes[sizeof(NAME(compensator)) + 8];
+    unsigned char bytes[sizeof(NAME(calibrated_arm)) + sizeof(NAME(compensator))];
   } room;
   NAME(calibrated_arm)* const crooked = (NAME(calibrated_arm)*)(void*)(room.bytes + 4);
   static NAME(compensator) loop_a, loop_b, blank;

@@ -41,7 +41,7 @@ struct TermsRamp {
 
 /// One loop's compensator: the arm that the controller believes and the one that the loop is on, which a ramp moves. It
 /// holds copies, but for the table of joint functions: a CalibratedArm that has some may change or go when refers_to() says no.
-/// Plain data, some 13 KiB (float 7); one a loop.
+/// Plain data, some 10 KiB (float 5); one a loop.
 /// Its functions are for the thread that runs the loop: none of them locks, and none may run beside another on the same
 /// compensator. What prepares a new calibration in another thread hands a finished CalibratedArm over to the loop's thread
 /// (a pointer in an atomic will do), which then calls start_ramp().
