@@ -37,7 +37,7 @@ struct Search {
 };
 
 /// The second-order model at a search's joints over the joints that may move.
-struct Model {
+struct ErrorModel {
   std::int8_t index[max_joints];    ///< of the joints that may move
   bool bent;                        ///< whether the residual's curvature counts
   Real mu;                          ///< the damping's square
@@ -108,7 +108,7 @@ inline void settle(Search& search) {
 /// H = R'R + curvature of the residual r; R := that of H + shift (Cholesky), the shift growing from nothing until it is positive
 /// definite. What the residual bends is no product J'J: there is no orthogonal way to it, and where it counts the error has no
 /// steep slope that rounding could hide.
-[[gnu::noinline]] void bend_triangle(const Search& search, Model& model, const Real* r) {
+[[gnu::noinline]] void bend_triangle(const Search& search, ErrorModel& model, const Real* r) {
   Stack& stack = model.triangle;
   const std::int32_t size = stack.size;
   constexpr int own = max_joints - 1;
@@ -150,7 +150,7 @@ inline void settle(Search& search) {
 }
 
 /// The weakest direction of R'R, and (R'R)^-1 of it: inverse iteration.
-[[gnu::noinline]] void find_direction(Model& model) {
+[[gnu::noinline]] void find_direction(ErrorModel& model) {
   const std::int32_t size = model.triangle.size;
   Real* v = model.v;
   Real* x = model.along;
@@ -167,7 +167,7 @@ inline void settle(Search& search) {
 }
 
 /// The least of the model of y after a step `done` (or null) without the weakest direction's part, as a step of all joints.
-[[gnu::noinline]] void solve_others(const Search& search, const Model& model, const Real* y, const Real* done, Real* d) {
+[[gnu::noinline]] void solve_others(const Search& search, const ErrorModel& model, const Real* y, const Real* done, Real* d) {
   const BoxProblem& problem = search.problem;
   const std::int32_t size = model.triangle.size;
   Real x[max_joints] = {}, before[6];
@@ -240,7 +240,7 @@ inline Real along_weakest(const Real* r, const Real* j, const Real* x, Real mu, 
 
 /// Factors what may move: R'R = J'J + mu over all joints but those on a limit that the error pushes outwards. `rest` receives
 /// what the least of |b - J d|^2 + mu |d|^2 leaves of b.
-inline void factor_movable(Search& search, Model& model, Real* rest) {
+inline void factor_movable(Search& search, ErrorModel& model, Real* rest) {
   const BoxProblem& problem = search.problem;
   const TickState& state = *search.state;
   Stack& stack = model.triangle;
@@ -283,7 +283,7 @@ inline bool others_late(const TickState& state, const Real* d) {
   const TickState& state = *search.state;
   const std::int32_t columns = problem.columns;
   const Real floor = least_damping * least_damping;
-  Model model;
+  ErrorModel model;
   model.mu = mu > floor ? mu : floor;
   Real left[6];
   for (std::int32_t j = 0; j < columns; ++j) d[j] = 0;
