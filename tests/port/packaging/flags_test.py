@@ -28,7 +28,7 @@ else:
 PROGRAM = """
 #include <stdio.h>
 #include "mdhcal.h"
-static uint8_t bytes[4097];
+static uint8_t bytes[8161];
 static PREFIX(calibrated_arm) arm;
 int main(int count, char** arguments) {
   FILE* file = count == 2 ? fopen(arguments[1], "rb") : NULL;
