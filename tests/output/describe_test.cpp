@@ -26,7 +26,7 @@ TEST(Show, JsonHasEverythingInMillimetresAndDegrees) {
   const json blob = json::parse(run.out);
   EXPECT_EQ(blob["name"], "sample arm");
   EXPECT_EQ(blob["serial"], "SN-0007");
-  EXPECT_EQ(blob["format"], "1.0");
+  EXPECT_EQ(blob["format"], "2.0");
   ASSERT_EQ(blob["links"].size(), 6U);
   EXPECT_DOUBLE_EQ(blob["links"][0]["nominal"]["d_mm"], 360.0);
   EXPECT_NEAR(blob["links"][0]["deviation"]["d_mm"], 1.0, 1e-12);
@@ -49,7 +49,7 @@ TEST(Show, TextNamesEveryPart) {
   const auto run = run_mdhcal({"show", std::string(MDHCAL_SOURCE_DIR) + "/tests/blob/golden/every-field-2.0.blob"});
   ASSERT_EQ(run.exit_code, 0) << run.err;
   for (const char* part :
-       {"Prüfling 8", "SN/2026-0815", "golden_blob.py for format 1.0", "2026-11-21", "rpim", "0.015625", "quasi-optimality",
+       {"Prüfling 8", "SN/2026-0815", "golden_blob.py for format 2.0", "2026-11-21", "rpim", "0.015625", "quasi-optimality",
         "1234 poses", "808182", "567 poses", "2.6500 -> 0.0320 mm", "5.1000 -> 0.1480 mm", "c0c1c2c3c4c5c6c7", "77",
         "305419896", "three parallel axes", "1e-07 mm", "1250.000000", "\"target-7\": 7100.000000", "link 8",
         "2.8 of 1", "-143.2394 deg", "2750.0000 mm", "268.800000", "19.9389313", "-1.200000", "vector 4 in float"}) {

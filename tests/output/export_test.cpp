@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include <ostream>
+
 #include "offline/base/error.hpp"
 #include "tests/support/program.hpp"
 
@@ -38,6 +40,8 @@ struct Case {
   const char* address;
 };
 
+void PrintTo(const Case& one, std::ostream* to) { *to << one.format << " at " << one.address; }
+
 class Images : public testing::TestWithParam<Case> {};
 INSTANTIATE_TEST_SUITE_P(Export, Images,
                          testing::Values(Case{"hex", "-intel", "ihex", "0x08040000"},
@@ -46,8 +50,8 @@ INSTANTIATE_TEST_SUITE_P(Export, Images,
                                          Case{"hex", "-intel", "ihex", "0x0803F820"},
                                          Case{"srec", "-motorola", "srec", "0x0803F820"},
                                          Case{"hex", "-intel", "ihex", "0"}, Case{"srec", "-motorola", "srec", "0"},
-                                         Case{"hex", "-intel", "ihex", "0xFFFFF000"},
-                                         Case{"srec", "-motorola", "srec", "4294963200"}));
+                                         Case{"hex", "-intel", "ihex", "0xFFFFE020"},
+                                         Case{"srec", "-motorola", "srec", "4294959136"}));
 
 TEST_P(Images, AreReadBackBySrecCatAndObjcopy) {
   const Case& c = GetParam();

@@ -208,7 +208,7 @@ TEST(BlobPage, FieldListLeavesNoByteOut) {
     ASSERT_TRUE(size.contains(row.type.substr(0, bracket))) << row.type;
     end[record] += count * size[row.type.substr(0, bracket)];
   }
-  EXPECT_EQ(end[""], 8192U);
+  EXPECT_EQ(end[""], blob_size);
   for (const auto& [record, bytes] : end) {
     if (!record.empty()) {
       EXPECT_EQ(bytes, size[record]) << record;

@@ -14,15 +14,15 @@ constexpr FlashGeometry geometry = {32, 4096, 4, 0xFF};
 // The fake behind a driver in C, whose failures have numbers of their own.
 mdhcal_flash in_c(FakeFlash& fake) {
   return {{geometry.granule_bytes, geometry.sector_bytes, geometry.sector_count, geometry.erased_value},
-          [](void* context, std::uint32_t address, std::uint8_t* to, std::uint32_t size) {
+          [](void* context, std::uint32_t address, std::uint8_t* to, std::uint32_t size) -> std::int32_t {
             const Flash& flash = static_cast<FakeFlash*>(context)->flash;
             return flash.read(flash.context, address, to, size) == Status::ok ? 0 : -5;
           },
-          [](void* context, std::uint32_t address, const std::uint8_t* granule) {
+          [](void* context, std::uint32_t address, const std::uint8_t* granule) -> std::int32_t {
             const Flash& flash = static_cast<FakeFlash*>(context)->flash;
             return flash.program(flash.context, address, granule) == Status::ok ? 0 : -6;
           },
-          [](void* context, std::uint32_t address) {
+          [](void* context, std::uint32_t address) -> std::int32_t {
             const Flash& flash = static_cast<FakeFlash*>(context)->flash;
             return flash.erase(flash.context, address) == Status::ok ? 0 : 7;
           },
