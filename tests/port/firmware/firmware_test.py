@@ -227,8 +227,8 @@ class Firmware(unittest.TestCase):
 
     def test_power_cut_at_flash_changes_of_an_update(self):
         outcomes = set()
-        # One erase, 128 granules of the blob, and the header last.
-        for change in (1, 2, 3, 65, 128, 129, 130):
+        # One erase, 255 granules of the blob, and the header last.
+        for change in (1, 2, 3, 128, 255, 256, 257):
             flash = self.flash("first")
             board = self.start(flash, "--cut-after", str(change))
             board.wait_for("swap: done")
@@ -237,7 +237,7 @@ class Firmware(unittest.TestCase):
             self.assertTrue(board.has("flash: power cut"))
             again = self.start(flash)
             line = again.wait_for(", sequence ")
-            outcomes.add((change == 130, line.split(",")[0]))
+            outcomes.add((change == 257, line.split(",")[0]))
             again.wait_for("swap: done")
             again.send_blob(self.blob["second"])
             again.wait_for("update: committed")
@@ -247,7 +247,7 @@ class Firmware(unittest.TestCase):
         self.assertEqual(outcomes, {(False, "boot: slot 0"), (True, "boot: slot 1")})
 
     def test_killed_in_the_middle_of_an_update(self):
-        for granule in (0, 40, 127):
+        for granule in (0, 80, 254):
             flash = self.flash("first")
             board = self.start(flash)
             board.wait_for("swap: done")
