@@ -15,8 +15,9 @@ constexpr bool slow_double = false;
 #endif
 
 TEST(Golden, DoubleHasTheSameBitsOnEveryMachine) {
-  EXPECT_EQ(golden_hash<double>(golden_short), golden_double_short);
+  EXPECT_EQ(golden_hash<double>(golden_soft), golden_double_soft);
   if (!slow_double) {
+    EXPECT_EQ(golden_hash<double>(golden_short), golden_double_short);
     EXPECT_EQ(golden_hash<double>(golden_operations), golden_double);
   }
 }
