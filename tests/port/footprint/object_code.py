@@ -16,7 +16,7 @@ from target import Target, run
 FUSED = {"arm": r"\bvfn?m[as]", "aarch64": r"\bfn?m(add|sub)\b|\bfml[as]\b", "x86": r"\bvfn?m(add|sub)"}
 # What a compiler may call by itself: copies, and arithmetic of libgcc that the processor lacks.
 ALLOWED = r"mem(cpy|set|move|cmp)|__aeabi_\w+|__\w+[sdt]f\w*|__gnu_\w+|_GLOBAL_OFFSET_TABLE_|__stack_chk_fail"
-POSIX = r"open|close|pread\w*|pwrite\w*|fsync|flock|f?stat\w*|link|unlink|getpid|snprintf|strrchr|__errno_location|__\w+_chk|strlen"
+POSIX = r"open|close|pread\w*|pwrite\w*|fsync|flock|f?stat\w*|link|unlink|getrandom|snprintf|strrchr|__errno_location|__\w+_chk|strlen"
 POISON = ["malloc", "free", "calloc", "realloc", "_malloc_r", "_free_r", "_Znwj", "_Znwm", "_ZdlPv", "_ZdlPvj", "_ZdlPvm",
           "__cxa_throw", "__cxa_allocate_exception", "__cxa_guard_acquire", "__cxa_pure_virtual", "__cxa_atexit",
           "__dynamic_cast", "printf", "puts", "abort", "exit", "__errno", "sin", "cos", "atan2", "sqrt", "sqrtf"]
