@@ -18,13 +18,13 @@ static void put_pose(int32_t status, const mdhcal_pose* pose, double* poses, siz
   if (mdhcal_usable(status)) {
     memcpy(poses + 7 * row, pose, sizeof *pose);
   } else {
-    for (k = 0; k < 7; ++k) poses[7 * row + k] = NAN;
+    for (k = 0; k < 7; ++k) poses[7 * row + k] = (double)NAN;
   }
 }
 
 static void fill(double* values, size_t count) {
   size_t k;
-  for (k = 0; k < count; ++k) values[k] = NAN;
+  for (k = 0; k < count; ++k) values[k] = (double)NAN;
 }
 
 uint32_t mdhcal_abi_version(void) { return MDHCAL_ABI_VERSION; }
