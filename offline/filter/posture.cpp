@@ -60,7 +60,7 @@ Vector3 origin_of(const Frame<double>& frame) { return {frame.position_m[0], fra
 
 }  // namespace
 
-Postures::Postures(const Geometry& nominal) : geometry_(nominal) {
+Postures::Postures(const Geometry& nominal) {
   (void)make_arm(nominal, arm_);
   spherical_ = family_of(arm_) == ArmFamily::spherical_wrist;
   if (!spherical_) return;

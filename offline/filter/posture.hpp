@@ -57,7 +57,6 @@ class Postures {
   Sides sides(const Joints& q) const;
 
   Arm<double> arm_{};
-  Geometry geometry_;
   bool spherical_ = false;
   Arm<double> begin_[4]{};  // the arm's first 1, 2, 3 and 5 links
   double front_sign_ = 1, above_sign_ = 1;

@@ -22,7 +22,7 @@ void skip_script(Scanner& s) {
 
 class UrScript {
  public:
-  UrScript(std::string_view text, const std::string& path) : text_(text), path_(path), s_(text, path) { out_.language = ProgramLanguage::urscript; }
+  UrScript(std::string_view text, const std::string& path) : text_(text), s_(text, path) { out_.language = ProgramLanguage::urscript; }
 
   TargetText read() {
     // Variables first: a move in a function may stand before the assignment.
@@ -184,7 +184,6 @@ class UrScript {
   }
 
   std::string_view text_;
-  const std::string& path_;
   Scanner s_;
   TargetText out_;
   std::string tool_ = unknown_name;
