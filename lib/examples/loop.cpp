@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-#include <chrono>
+#include <time.h>
+
 #include <cstdio>
-#include <thread>
 
 #include <mdhcal/mdhcal.hpp>
 
@@ -16,9 +16,9 @@ int main(int, char** arguments) {
   if (!usable(load(bytes, size, {}, arm)) || start_at_rest(arm, Model::corrected, loop) != Status::ok) return 1;
   const TickOptions<double> options = default_tick_options(arm, 0.001);
   double nominal_q[max_joints] = {0.5, 0.4, 0.6, 0.5, 0.7, 0.5}, q[max_joints] = {0.5, 0.4, 0.6, 0.5, 0.7, 0.5};
-  auto next = std::chrono::steady_clock::now();
+  constexpr timespec millisecond{0, 1000000};
   for (int tick = 0; tick < 1000; ++tick) {
-    std::this_thread::sleep_until(next += std::chrono::milliseconds(1));
+    nanosleep(&millisecond, nullptr);
     nominal_q[0] += 0.0001;                                                // what your controller's own inverse gives
     if (!usable(joints_to_joints(loop, options, nominal_q, q))) return 2;  // q: what to command in its place
   }

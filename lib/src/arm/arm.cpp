@@ -142,7 +142,7 @@ bool invert_map(Arm<Real>& arm) {
     }
     // Ratios are within 100: a pivot below this is a rounding of zero, or makes an inverse of no use.
     const double divisor = left[pivot][k];
-    if (!(magnitude(divisor) > 1e-6)) return false;
+    if (!(magnitude(divisor) > 1e-6)) return false;  // a hundred-millionth of the largest ratio
     for (std::int32_t j = 0; j < n; ++j) {
       const double l = left[pivot][j], r = right[pivot][j];
       left[pivot][j] = left[k][j];

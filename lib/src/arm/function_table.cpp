@@ -26,7 +26,7 @@ void make(Interpolation& to) {
     for (int k = 0; k <= last; ++k) {
       double cosine = 0.0;
       sin_cos(pi * static_cast<double>(m * k) / static_cast<double>(last), sine, cosine);
-      const double half = (m == 0 || m == last ? 0.5 : 1.0) * (k == 0 || k == last ? 0.5 : 1.0);
+      const double half = (m == 0 || m == last ? 0.5 : 1.0) * (k == 0 || k == last ? 0.5 : 1.0);  // ends count half
       chebyshev[k][m] = 2.0 / static_cast<double>(last) * half * cosine;
     }
   }
@@ -63,7 +63,7 @@ void make_table(const Transmission& transmission, JointFunctionTable& table) noe
       if (f.order_count < 1) continue;
       double value[nodes], slope = 0.0;
       for (int m = 0; m < nodes; ++m) {
-        const double reading = (static_cast<double>(s) + 0.5 + 0.5 * interpolation.point[m]) * sector_rad;
+        const double reading = (static_cast<double>(s) + 0.5 + 0.5 * interpolation.point[m]) * sector_rad;  // point: -1 ... 1
         evaluate_joint_function(f, reading, value[m], slope);
       }
       for (int k = 0; k < nodes; ++k) {

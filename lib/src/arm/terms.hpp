@@ -152,7 +152,7 @@ inline void sag_of(const Arm<Real>& arm, const Levers<along>& levers, Real* sag,
 [[gnu::always_inline]] inline void turn_by_sag(Real sag, Real& sine, Real& cosine) {
   const Real square = sag * sag;
   const Real s = sag + sag * square * (Real(-1.0 / 6) + square * (Real(1.0 / 120) - square * Real(1.0 / 5040)));
-  const Real c = square * (Real(-0.5) + square * (Real(1.0 / 24) - square * Real(1.0 / 720)));
+  const Real c = square * (Real(-0.5) + square * (Real(1.0 / 24) - square * Real(1.0 / 720)));  // cos - 1 to sag^6
   const Real turned = sine + (sine * c + cosine * s);
   cosine = cosine + (cosine * c - sine * s);
   sine = turned;

@@ -70,7 +70,7 @@ Status judge(const Geometry& geometry, const Gravity& gravity) {
     if (!within_bound(g, 2.0)) return Status::bad_input;
     square += g * g;
   }
-  const bool directed = within_bound(square - 1.0, 1e-9);
+  const bool directed = within_bound(square - 1.0, 1e-9);  // a unit vector written with ten digits
   if (!directed && !is_zero(square)) return Status::bad_input;
   if (!within(0.0, gravity.payload_kg, max_payload_kg)) return Status::bad_input;
   for (const double p : gravity.payload_com_m) {

@@ -26,7 +26,7 @@ inline std::int32_t floor_of(double x) {
 
 /// Of a function whose readings seen are finite and within max_reading. An end that is off a sector's by a rounding is on it.
 inline Window window_of(const JointFunction& f) {
-  constexpr double rounding = 1e-9;
+  constexpr double rounding = 1e-9;  // of a sector: at max_reading 1e4 sectors, rounded to 2e-12 of one
   const std::int32_t first = -floor_of(rounding - f.seen_min_rad * sectors_per_rad);
   const std::int32_t sectors = floor_of(f.seen_max_rad * sectors_per_rad + rounding) - first;
   const std::int32_t gap = turn_sectors - sectors;

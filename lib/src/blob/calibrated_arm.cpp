@@ -43,7 +43,7 @@ Status make_calibrated_arm(const Geometry& nominal, const Geometry& corrected, c
   arm.corrected = corrected_arm;
   arm.description = BlobDescription{};
   arm.description.tracker_T_base.quaternion[0] = 1.0;
-  arm.description.tolerances = {1e-10, 1e-10, 5e-6F, 5e-6F};
+  arm.description.tolerances = {1e-10, 1e-10, 5e-6F, 5e-6F};  // what ticks of arms of metres reach: Tick/*
   return Status::ok;
 }
 
