@@ -6,6 +6,7 @@
 
 #include "offline/base/distributions.hpp"
 #include "offline/base/error.hpp"
+#include "offline/identify/mistakes/quick_fit.hpp"
 #include "offline/identify/unknowns.hpp"
 #include "offline/robot/vectors.hpp"
 
@@ -33,15 +34,6 @@ Job thinned(const Job& job, std::size_t most) {
 }
 
 namespace {
-
-double spread_of(const std::vector<Vector3>& points) {
-  Vector3 mean{};
-  for (const Vector3& p : points) mean = plus(mean, p);
-  for (double& c : mean) c /= static_cast<double>(points.size());
-  double sum = 0.0;
-  for (const Vector3& p : points) sum += dot(minus(p, mean), minus(p, mean));
-  return std::sqrt(sum / (3.0 * static_cast<double>(points.size())));
-}
 
 double smaller_spread_mm(const MeasurementModel& model, const Dataset& data) {
   std::vector<Vector3> measured;

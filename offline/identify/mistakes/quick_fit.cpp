@@ -26,15 +26,6 @@ constexpr int newton_steps = 5;
 
 using Frames = std::vector<Frame<double>>;
 
-double spread(const std::vector<Vector3>& points) {
-  Vector3 mean{};
-  for (const Vector3& p : points) mean = plus(mean, p);
-  for (double& c : mean) c /= static_cast<double>(points.size());
-  double sum = 0.0;
-  for (const Vector3& p : points) sum += dot(minus(p, mean), minus(p, mean));
-  return std::sqrt(sum / (3.0 * static_cast<double>(points.size())));
-}
-
 std::vector<Vector3> predicted(const Frames& frames, const std::vector<Sighting>& sightings, const Estimate& estimate) {
   std::vector<Vector3> out;
   out.reserve(sightings.size());
@@ -60,7 +51,7 @@ bool affine_start(const Frames& frames, const std::vector<Sighting>& sightings, 
   if (rows < columns + 3) return false;
   const std::vector<Vector3> points = measured(sightings);
   // Lengths in any unit: the columns of the measured points are scaled to the size of direction cosines.
-  const double unit = spread(points);
+  const double unit = spread_of(points);
   if (!(unit > 0.0)) return false;
   Vector3 centre{};
   for (const Vector3& p : points) centre = plus(centre, p);
@@ -92,7 +83,7 @@ bool affine_start(const Frames& frames, const std::vector<Sighting>& sightings, 
   out.length_ratio = 1.0 / std::cbrt(svd.s(0) * svd.s(1) * svd.s(2));
   out.mirrored = map.row(0).dot(map.row(1).cross(map.row(2))) < 0.0;
   const double free = static_cast<double>(rows - columns);
-  out.affine_misfit = std::sqrt(missed.squaredNorm() / free) / spread(predicted(frames, sightings, out.estimate));
+  out.affine_misfit = std::sqrt(missed.squaredNorm() / free) / spread_of(predicted(frames, sightings, out.estimate));
   return solved.rank == columns;
 }
 
@@ -133,6 +124,15 @@ void newton_step(const Frames& frames, const std::vector<Sighting>& sightings, c
 
 }  // namespace
 
+double spread_of(const std::vector<Vector3>& points) {
+  Vector3 mean{};
+  for (const Vector3& p : points) mean = plus(mean, p);
+  for (double& c : mean) c /= static_cast<double>(points.size());
+  double sum = 0.0;
+  for (const Vector3& p : points) sum += dot(minus(p, mean), minus(p, mean));
+  return std::sqrt(sum / (3.0 * static_cast<double>(points.size())));
+}
+
 std::vector<Sighting> sightings_of(const Dataset& data) {
   std::vector<Sighting> out;
   for (const Measurement& m : data.rows) {
@@ -162,7 +162,7 @@ QuickFit quick_fit(const Estimate& nominal, const std::vector<Sighting>& sightin
   const double unknowns = 6.0 + 3.0 * static_cast<double>(estimate.flange_p_m.size());
   if (scalars < unknowns + 3.0) return out;
   const double freedom = std::sqrt(scalars / (scalars - unknowns));
-  const double spread_measured = spread(points);
+  const double spread_measured = spread_of(points);
   std::vector<double> norms(sightings.size());
   std::vector<double> root_weight;
   for (int k = 0; k <= newton_steps; ++k) {
@@ -171,7 +171,7 @@ QuickFit quick_fit(const Estimate& nominal, const std::vector<Sighting>& sightin
       norms[i] = norm(minus(transform(estimate.tracker_T_base, base_p[i]), points[i])) / chi_median(3);
     }
     const double scale = robust_scale(norms, freedom, nanometre);
-    const double misfit = scale / std::min(spread_measured, spread(base_p));
+    const double misfit = scale / std::min(spread_measured, spread_of(base_p));
     if (misfit < out.misfit) {
       out.misfit = misfit;
       out.scale_m = scale;

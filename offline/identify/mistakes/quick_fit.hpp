@@ -20,6 +20,9 @@ struct Sighting {
 /// The rows of `data` that state a position.
 std::vector<Sighting> sightings_of(const Dataset& data);
 
+/// How far points lie from their mean along one axis: root of the mean square [m]. NaN of none.
+double spread_of(const std::vector<Vector3>& points);
+
 struct QuickFit {
   /// Scale of one axis's residual over the smaller of two spreads, that of the measured and that of the predicted
   /// points: 1 says that nothing is explained, and shrinking one side never makes it less. Infinite where the geometry or
